@@ -1,0 +1,58 @@
+#pragma once
+
+#include "core/motion.hpp"
+#include "core/shape.hpp"
+#include "core/time_of_impact.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace kairos {
+inline namespace core {
+
+/// A shape and how it moves.
+struct MovingShape {
+  const Shape& shape;
+  const Motion& motion;
+};
+
+/// From when and for how long a query looks.
+struct Window {
+  Instant start;          ///< within both motions
+  double duration = 0.0;  ///< s, >= 0; within both motions; may be infinite where both are
+};
+
+struct DetectorInfo {
+  std::string_view name;
+  bool locates = false;  ///< answers `time_of_impact` with a time, not only with yes or no
+  bool proves = false;   ///< its `separated` and its brackets are proven, rounding included
+  std::string_view summary;
+};
+
+/// Port: are these two touching, and since when? Stateless; safe to share between threads.
+class ContactDetector {
+ public:
+  virtual ~ContactDetector() = default;
+  [[nodiscard]] virtual DetectorInfo info() const = 0;
+
+  /// Do they overlap at these poses? Only the boolean: the cheap question of every frame.
+  [[nodiscard]] virtual bool overlaps(const Shape& a, const Pose& pose_a, const Shape& b,
+                                      const Pose& pose_b) const = 0;
+  /// The same with signed gap, normal (a to b) and the centroid of the contact patch.
+  [[nodiscard]] virtual Overlap overlap(const Shape& a, const Pose& pose_a, const Shape& b,
+                                        const Pose& pose_b) const = 0;
+  /// When do they first touch within the window? `tolerance` in m; 0 takes the default:
+  /// 1e-9 of the smaller extent plus the roundoff of the coordinates.
+  [[nodiscard]] virtual TimeOfImpact time_of_impact(const MovingShape& a, const MovingShape& b,
+                                                    const Window& window,
+                                                    double tolerance) const = 0;
+  /// Two shapes that overlap at the start: when do they part? `impact` brackets the parting
+  /// (still overlapping, or touching within tolerance, at t_lo; apart at t_hi); `overlapping`:
+  /// not within the window; `separated`: apart at the start already. For fields.
+  [[nodiscard]] virtual TimeOfImpact time_of_separation(const MovingShape& a, const MovingShape& b,
+                                                        const Window& window,
+                                                        double tolerance) const = 0;
+};
+
+}  // namespace core
+}  // namespace kairos

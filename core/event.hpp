@@ -1,0 +1,33 @@
+#pragma once
+
+#include "core/impact_law.hpp"
+#include "core/instant.hpp"
+#include "core/state.hpp"
+
+#include <string_view>
+
+namespace kairos {
+inline namespace core {
+
+enum class EventKind {
+  impact,          ///< two solids met and the impact law was applied
+  contact_begins,  ///< a body comes to rest on a surface
+  contact_ends,    ///< it leaves the surface
+  field_entered,
+  field_left,
+};
+[[nodiscard]] std::string_view to_string(EventKind kind);
+
+/// Something that happened between two bodies.
+struct Event {
+  Instant time;
+  EventKind kind = EventKind::impact;
+  BodyIndex a = 0;
+  BodyIndex b = 0;
+  Contact contact;
+  BodyState before_a, after_a;
+  BodyState before_b, after_b;
+};
+
+}  // namespace core
+}  // namespace kairos

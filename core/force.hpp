@@ -1,0 +1,58 @@
+#pragma once
+
+#include "core/instant.hpp"
+#include "core/state.hpp"
+
+#include <span>
+#include <string>
+
+namespace kairos {
+inline namespace core {
+
+/// Force through the origin of a body and torque about it, world frame (N, N m).
+struct Wrench {
+  Vector3 force = Vector3::Zero();
+  Vector3 torque = Vector3::Zero();
+};
+
+/// Inertia of one body of an island.
+struct BodyInertia {
+  double mass = 0.0;                    ///< kg, > 0
+  Vector3 principal = Vector3::Zero();  ///< principal moments in body axes, kg m^2
+  bool rotates = false;                 ///< false: orientation is not integrated at all
+};
+
+/// Port: a force that depends on the state or on time (drag, spring, Magnus). Constant forces are
+/// not `Force`s: an `Island` holds their sum per body, so that motions stay closed-form.
+class Force {
+ public:
+  virtual ~Force() = default;
+  /// Adds to the wrenches of the island's bodies at time t; arrays are indexed as the island's.
+  virtual void add(Instant t, std::span<const BodyState> bodies,
+                   std::span<Wrench> wrenches) const = 0;
+  /// Potential energy, J; 0 for forces that have none.
+  [[nodiscard]] virtual double potential(Instant t, std::span<const BodyState> bodies) const = 0;
+  /// True if `potential` tells the whole work of the force.
+  [[nodiscard]] virtual bool conservative() const = 0;
+  [[nodiscard]] virtual std::string description() const = 0;
+};
+
+/// The bodies that forces couple: what a `Stepper` advances. Usually one body.
+struct Island {
+  std::vector<BodyIndex> bodies;        ///< indices into the model
+  std::vector<BodyInertia> inertia;     ///< one per body
+  std::vector<Vector3> constant_force;  ///< one per body, N: gravity, given forces, active fields
+  std::vector<const Force*> forces;     ///< state- or time-dependent, not owned
+
+  /// Wrenches on all bodies at time t.
+  void wrenches(Instant t, std::span<const BodyState> states, std::span<Wrench> out) const;
+  /// True when the only forces are constant: translation is then a parabola.
+  [[nodiscard]] bool constant_acceleration() const { return forces.empty(); }
+};
+
+/// Angular acceleration, world frame, rad/s^2: R I^-1 (R^T torque - w_B x I w_B).
+[[nodiscard]] Vector3 angular_acceleration(const BodyInertia& inertia, const BodyState& state,
+                                           const Vector3& torque);
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "core/scene.hpp"
+
+#include <string_view>
+
+namespace kairos {
+inline namespace core {
+
+/// Where and how two bodies touch; bodies a and b as in the query that found it.
+struct Contact {
+  Vector3 point = Vector3::Zero();   ///< centroid of the contact patch, world frame, m
+  Vector3 normal = Vector3::Zero();  ///< unit, from a to b, world frame
+  double gap = 0.0;                  ///< m; negative: penetration
+};
+
+/// One of the two bodies, as a law may see and change it.
+struct ImpactBody {
+  const Body& body;
+  const BodyInertia& inertia;  ///< mass -1: not free
+  BodyState& state;
+  Vector3& net_force;  ///< N: what the thesis' GivePhysForce adds to
+};
+
+/// What an impact did to the energy, by formula and not by difference; J, into the bodies.
+struct ImpactEnergy {
+  double restitution_loss = 0.0;     ///< <= 0
+  double driven_work = 0.0;          ///< done by driven bodies
+  double conveyor_and_hand = 0.0;    ///< done by belts (and hands)
+  double position_correction = 0.0;  ///< work against gravity of moving a body out of the way
+};
+
+struct LawInfo {
+  std::string_view name;
+  bool needs_contact = false;  ///< uses the contact's point and normal
+  std::string_view summary;
+};
+
+/// Port: what do two bodies in contact do to each other?
+class ImpactLaw {
+ public:
+  virtual ~ImpactLaw() = default;
+  [[nodiscard]] virtual LawInfo info() const = 0;
+  /// Changes the velocities (and, for the thesis' nudge, positions) and net forces of both.
+  virtual ImpactEnergy apply(const Contact& contact, ImpactBody a, ImpactBody b) const = 0;
+};
+
+/// Relative normal velocity of b against a at the contact point, m/s; negative: approaching.
+[[nodiscard]] double normal_velocity(const Contact& contact, const BodyState& a,
+                                     const BodyState& b);
+
+}  // namespace core
+}  // namespace kairos

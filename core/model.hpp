@@ -1,0 +1,94 @@
+#pragma once
+
+#include "core/scene.hpp"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+
+/// Savings that can be switched off, to show that they change cost and not results.
+struct ModelOptions {
+  bool leave_out_orientation =
+      true;                 ///< bodies that nothing can turn are not integrated in rotation
+  bool closed_form = true;  ///< parabolas instead of an integrator, where `auto` is asked
+  bool prune_pairs = true;  ///< pairs that can never interact are never tested
+};
+
+using BodyPair = std::pair<BodyIndex, BodyIndex>;  ///< first < second
+
+/// Why the model leaves something out or puts it in.
+struct Decision {
+  std::string topic;   ///< "bodies", "rotation", "motion", "pairs", "broad phase", ...
+  std::string text;    ///< what was decided
+  std::string reason;  ///< why
+};
+
+/// The least physics that a scene requires. Const after construction: who can move, rotate,
+/// collide; which motions are closed-form; which pairs can ever meet. It can say why.
+class Model {
+ public:
+  /// Throws `InputError` where the scene cannot work: solids that overlap at the start, one of
+  /// them movable; a free body with no mass.
+  explicit Model(Scene scene, const ModelOptions& options = {});
+
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+  [[nodiscard]] const ModelOptions& options() const { return options_; }
+  [[nodiscard]] std::size_t size() const { return scene_.bodies.size(); }
+  [[nodiscard]] const Body& body(BodyIndex i) const { return scene_.bodies[i]; }
+  [[nodiscard]] const Entity& entity(BodyIndex i) const { return *scene_.bodies[i].entity; }
+  [[nodiscard]] const Shape& shape(BodyIndex i) const { return shapes_[i]; }
+  [[nodiscard]] Mobility mobility(BodyIndex i) const { return mobility_[i]; }
+  [[nodiscard]] bool is_free(BodyIndex i) const { return mobility_[i] == Mobility::free; }
+  [[nodiscard]] bool rotates(BodyIndex i) const { return rotates_[i]; }
+  [[nodiscard]] bool is_field(BodyIndex i) const { return entity(i).is_field(); }
+  /// Inertia as islands and impact laws see it; mass -1 for bodies that are not free.
+  [[nodiscard]] const BodyInertia& inertia(BodyIndex i) const { return inertia_[i]; }
+  /// Gravity on body i, N (0 for bodies that are not free).
+  [[nodiscard]] const Vector3& gravity_force(BodyIndex i) const { return gravity_force_[i]; }
+
+  /// Pairs that can ever interact, in the order of creation.
+  [[nodiscard]] const std::vector<BodyPair>& pairs() const { return pairs_; }
+  [[nodiscard]] bool interacts(BodyIndex a, BodyIndex b) const {
+    return interacts_[a * size() + b];
+  }
+  /// The bodies that forces couple, with their constant forces; free bodies only.
+  [[nodiscard]] const std::vector<Island>& islands() const { return islands_; }
+  /// Island of a free body.
+  [[nodiscard]] std::size_t island_of(BodyIndex i) const { return island_of_[i]; }
+  /// True if `auto` takes the closed form for this island.
+  [[nodiscard]] bool closed_form(std::size_t island) const { return closed_form_[island]; }
+  /// Name of the broad phase that the scene needs.
+  [[nodiscard]] std::string_view broad_phase() const { return broad_phase_; }
+
+  /// Bodies at t = 0; driven bodies where their drive puts them.
+  [[nodiscard]] State initial_state() const;
+  /// Potential energy of gravity of body i, J (0 at y = 0).
+  [[nodiscard]] double gravity_potential(BodyIndex i, const Vector3& position) const {
+    return -gravity_force_[i].dot(position);
+  }
+  [[nodiscard]] double kinetic_energy(BodyIndex i, const BodyState& state) const;
+
+  [[nodiscard]] const std::vector<Decision>& decisions() const { return decisions_; }
+
+ private:
+  Scene scene_;
+  ModelOptions options_;
+  std::vector<Shape> shapes_;
+  std::vector<Mobility> mobility_;
+  std::vector<bool> rotates_;
+  std::vector<BodyInertia> inertia_;
+  std::vector<Vector3> gravity_force_;
+  std::vector<BodyPair> pairs_;
+  std::vector<bool> interacts_;
+  std::vector<Island> islands_;
+  std::vector<std::size_t> island_of_;
+  std::vector<bool> closed_form_;
+  std::string_view broad_phase_ = "all-pairs";
+  std::vector<Decision> decisions_;
+};
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "core/energy_ledger.hpp"
+#include "core/event.hpp"
+#include "core/model.hpp"
+#include "core/motion.hpp"
+
+#include <cstdint>
+#include <span>
+
+namespace kairos {
+inline namespace core {
+
+/// What a scheme does in a frame, for the flow diagrams of figs. 7 and 15.
+enum class Stage { draw, calculate_positions, restrict_movement, detect, handle, advance, locate };
+[[nodiscard]] std::string_view to_string(Stage stage);
+
+/// A rendered frame: the world as a person sees it.
+struct Frame {
+  std::int64_t index = 0;
+  Instant time;
+  std::span<const BodyState> bodies;  ///< indexed by `BodyIndex`
+  const EnergyLedger& ledger;         ///< balanced at `time`
+};
+
+/// Listens to a run. All callbacks come in order of time (motions: in order of creation) from the
+/// thread that runs the scheme; references are valid during the call only.
+class Recorder {
+ public:
+  virtual ~Recorder() = default;
+  virtual void begin(const Model& /*model*/) {}
+  virtual void frame(const Frame& /*frame*/) {}
+  /// Body `body` moves like this; a later motion of the same body ends it earlier, if it starts
+  /// before this one ends.
+  virtual void motion(BodyIndex /*body*/, const Motion& /*motion*/) {}
+  virtual void event(const Event& /*event*/) {}
+  /// A stage of the flow of events; `fraction` of the frame done (fig. 15).
+  virtual void stage(Stage /*stage*/, double /*fraction*/) {}
+};
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,87 @@
+#pragma once
+
+#include "core/drive.hpp"
+#include "core/entity.hpp"
+#include "core/force.hpp"
+#include "core/frame_times.hpp"
+#include "core/shape.hpp"
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+
+/// What a body collides as.
+enum class Bounds { shape, obb };
+/// What the number G of a body is: an acceleration (m/s^2), or the thesis' force (N).
+enum class GravityMode { acceleration, force };
+/// 5.4.1: whether a collision takes the line of centres as its normal.
+enum class CollisionType { square, round };
+
+/// One thing of a scene, as written.
+struct Body {
+  std::string name;
+  std::shared_ptr<const Entity> entity;
+  Shape shape;
+  Bounds bounds = Bounds::shape;
+  double mass = -1.0;                 ///< kg; -1: infinite
+  Vector3 inertia = Vector3::Zero();  ///< principal moments, body axes, kg m^2
+  BodyState initial;                  ///< at t = 0
+  double restitution = 1.0;           ///< of a pair: the product of both
+  double G = 9.8;                     ///< m/s^2 or N, see `GravityMode`
+  CollisionType collision_type = CollisionType::square;
+  Vector3 normal_B = Vector3::UnitY();  ///< of the reflecting face (5.5), body frame, unit
+  double scale = 1.0;                   ///< the model's scale (7.4)
+  std::shared_ptr<const Drive> drive;   ///< driven bodies only
+  int line = 0;                         ///< where it was written
+
+  /// What it collides as: its shape, or the box around it.
+  [[nodiscard]] Shape collision_shape() const;
+  /// The normal of its reflecting face in the world.
+  [[nodiscard]] Vector3 normal(const Pose& pose) const { return pose.orientation * normal_B; }
+};
+
+/// A state- or time-dependent force and the bodies it acts on.
+struct SceneForce {
+  std::shared_ptr<const Force> force;
+  std::vector<BodyIndex> bodies;  ///< in the order in which `Force::add` sees them
+};
+
+/// The known answer of a scene, by name, with its parameters (see scenes/README.md).
+struct ExactSolution {
+  std::string solution;
+  std::map<std::string, double> parameters;
+};
+
+/// What a person wrote: bodies, materials, force fields; SI units; y is up.
+struct Scene {
+  std::string name;
+  std::string summary;
+  std::string path;        ///< of the file; empty if made in code
+  double duration = 10.0;  ///< s
+  FrameTimes frames;
+  GravityMode gravity = GravityMode::acceleration;
+  std::vector<Body> bodies;  ///< in the order of creation
+  std::vector<SceneForce> forces;
+  std::optional<ExactSolution> exact;
+};
+
+/// A value of a scene file replaced before it is read: `body.ball.radius` and a TOML value.
+struct Override {
+  std::string key;
+  std::string value;
+};
+
+/// Reads a scene file; paths inside it are relative to it. Throws `InputError`.
+[[nodiscard]] Scene read_scene(const std::string& path,
+                               const std::vector<Override>& overrides = {});
+/// The same from text; `path` is used in messages and to find tracks.
+[[nodiscard]] Scene parse_scene(std::string_view text, const std::string& path,
+                                const std::vector<Override>& overrides = {});
+
+}  // namespace core
+}  // namespace kairos

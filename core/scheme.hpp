@@ -1,0 +1,88 @@
+#pragma once
+
+#include "core/broad_phase.hpp"
+#include "core/contact_detector.hpp"
+#include "core/impact_law.hpp"
+#include "core/recorder.hpp"
+#include "core/stepper.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace kairos {
+inline namespace core {
+
+/// Makes the stepper of an island: the one that was named, or what the `Model` chooses (`auto`).
+using IslandStepper = std::function<std::unique_ptr<Stepper>(const Model&, std::size_t island)>;
+using BroadPhaseFactory = std::function<std::unique_ptr<BroadPhase>(std::size_t bodies)>;
+
+/// The three choices beside the scheme. Nothing here knows of any other.
+struct Method {
+  IslandStepper stepper;
+  std::shared_ptr<const ContactDetector> detector;
+  std::shared_ptr<const ImpactLaw> law;
+  BroadPhaseFactory broad_phase;
+};
+
+struct SchemeOptions {
+  FrameTimes frames;            ///< how long rendered frames take
+  double duration = 10.0;       ///< s
+  double step = 0.0;            ///< s; longest integrator step under `event-driven`; 0: a frame
+  double threshold = 0.0;       ///< m; fig. 15's largest movement; 0: half of the smallest extent
+  bool equal_substeps = false;  ///< the mend of fig. 15: a frame in equal parts
+  std::int64_t max_substeps = 100000;  ///< in one frame; more is refused with a reason
+  double toi_tolerance = 0.0;          ///< m; 0: the detector's default
+  bool roundoff = false;               ///< replay steps in double-double for the ledger's roundoff
+};
+
+/// Counted work: what a run cost, whatever the machine.
+struct Cost {
+  std::int64_t frames = 0;
+  std::int64_t steps = 0;  ///< integrator steps (substeps, segments)
+  std::int64_t right_hand_sides = 0;
+  std::int64_t overlap_tests = 0;
+  std::int64_t toi_queries = 0;
+  std::int64_t toi_evaluations = 0;
+  std::int64_t impacts = 0;
+  std::int64_t events = 0;
+};
+
+enum class RunStatus {
+  completed,
+  stopped,  ///< before its end, with a reason; what was recorded is valid
+};
+
+struct RunResult {
+  RunStatus status = RunStatus::completed;
+  std::string reason;  ///< of a stop: `accumulation: ...`, `still approaching: ...`
+  Instant end;         ///< how far it got
+  State state;         ///< there
+  EnergyLedger ledger;
+  Cost cost;
+};
+
+struct SchemeInfo {
+  std::string_view name;
+  std::string_view summary;
+  std::string_view source;
+  bool needs_location = false;  ///< needs a detector that locates
+};
+
+/// When is the world looked at? Each scheme is one short main loop.
+class Scheme {
+ public:
+  virtual ~Scheme() = default;
+  [[nodiscard]] virtual SchemeInfo info() const = 0;
+  /// Why it cannot run this combination on this model; empty if it can.
+  [[nodiscard]] virtual std::string refuses(const Model& model, const Method& method,
+                                            const SchemeOptions& options) const = 0;
+  /// Runs; call only what `refuses` does not refuse.
+  virtual RunResult run(const Model& model, const Method& method, const SchemeOptions& options,
+                        Recorder& recorder) const = 0;
+};
+
+}  // namespace core
+}  // namespace kairos

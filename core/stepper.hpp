@@ -1,0 +1,64 @@
+#pragma once
+
+#include "core/force.hpp"
+#include "core/motion.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+
+namespace kairos {
+inline namespace core {
+
+struct StepperInfo {
+  std::string_view name;
+  int order = 0;           ///< of the step, for smooth forces; 0: exact
+  int position_order = 0;  ///< of the dense output's position; 0: exact
+  int velocity_order = 0;  ///< of the dense output's velocity; 0: exact
+  bool symplectic = false;
+  bool controlled = false;   ///< chooses its own step within the one asked for
+  std::string_view library;  ///< "kairos", "GSL", "SUNDIALS"
+  std::string_view source;   ///< citation key of paper/references.bib
+};
+
+struct StepResult {
+  double advanced = 0.0;  ///< s; less than asked for only by controlled steppers, never 0 if ok
+  double error = 0.0;     ///< estimated local error, in units of the tolerance; 0: none
+  bool ok = true;
+  std::string_view reason;  ///< of a failure
+};
+
+struct StepperOptions {
+  double relative_tolerance = 1e-10;
+  double absolute_tolerance = 1e-12;  ///< of positions (m) and velocities (m/s)
+};
+
+/// Port: moves the state of one island between impacts. Owns its memory (a lagged acceleration, a
+/// multistep history); one instance per island, not shared between threads.
+class Stepper {
+ public:
+  virtual ~Stepper() = default;
+  [[nodiscard]] virtual StepperInfo info() const = 0;
+
+  /// Whether it can advance this island at all; a non-empty string is the reason why not.
+  [[nodiscard]] virtual std::string refuses(const Island& island) const = 0;
+  /// Starts at `states` (one per body of the island): forgets everything.
+  virtual void start(const Island& island, Instant t, std::span<const BodyState> states) = 0;
+  /// The state jumped (an impact, a field): forget what the jump made wrong, keep the rest.
+  virtual void restart(const Island& island, Instant t, std::span<const BodyState> states) = 0;
+  /// Advances the states from t by at most h > 0.
+  virtual StepResult step(const Island& island, Instant t, double h,
+                          std::span<BodyState> states) = 0;
+  /// The last step as motions, one per body of the island. They end where `step` left the states,
+  /// except that velocity may jump there (the thesis' Euler).
+  virtual void dense_output(std::span<Motion> motions) const = 0;
+  /// Right-hand sides evaluated so far: the counted cost.
+  [[nodiscard]] virtual std::int64_t evaluations() const = 0;
+};
+
+/// Makes one stepper per island.
+using StepperFactory = std::unique_ptr<Stepper> (*)(const StepperOptions&);
+
+}  // namespace core
+}  // namespace kairos
