@@ -58,7 +58,7 @@ class EnergyLedger {
   [[nodiscard]] double kinetic() const { return kinetic_; }
   [[nodiscard]] double potential() const { return potential_; }
   [[nodiscard]] double energy() const { return kinetic_ + potential_; }
-  [[nodiscard]] double initial_energy() const { return initial_; }
+  [[nodiscard]] double initial_energy() const { return initial_kinetic_ + initial_potential_; }
   [[nodiscard]] double line(EnergyLine line) const {
     return lines_[static_cast<std::size_t>(line)].value();
   }
@@ -68,7 +68,8 @@ class EnergyLedger {
   [[nodiscard]] double unexplained() const;
 
  private:
-  double initial_ = 0.0;
+  double initial_kinetic_ = 0.0;
+  double initial_potential_ = 0.0;
   double kinetic_ = 0.0;
   double potential_ = 0.0;
   std::array<CompensatedSum, energy_line_count> lines_{};

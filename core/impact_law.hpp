@@ -24,10 +24,9 @@ struct ImpactBody {
 
 /// What an impact did to the energy, by formula and not by difference; J, into the bodies.
 struct ImpactEnergy {
-  double restitution_loss = 0.0;     ///< <= 0
-  double driven_work = 0.0;          ///< done by driven bodies
-  double conveyor_and_hand = 0.0;    ///< done by belts (and hands)
-  double position_correction = 0.0;  ///< work against gravity of moving a body out of the way
+  double restitution_loss = 0.0;   ///< <= 0
+  double driven_work = 0.0;        ///< done by driven bodies
+  double conveyor_and_hand = 0.0;  ///< done by belts (and hands)
 };
 
 struct LawInfo {

@@ -29,6 +29,8 @@ class Recorder {
  public:
   virtual ~Recorder() = default;
   virtual void begin(const Model& /*model*/) {}
+  /// Whether `motion` is of interest: schemes that need none for themselves then make none.
+  [[nodiscard]] virtual bool wants_motions() const { return false; }
   virtual void frame(const Frame& /*frame*/) {}
   /// Body `body` moves like this; a later motion of the same body ends it earlier, if it starts
   /// before this one ends.

@@ -11,6 +11,7 @@ inline namespace core {
 class Trajectory : public Recorder {
  public:
   void begin(const Model& model) override;
+  [[nodiscard]] bool wants_motions() const override { return true; }
   void frame(const Frame& frame) override;
   void motion(BodyIndex body, const Motion& motion) override;
   void event(const Event& event) override;

@@ -1,0 +1,33 @@
+#include "core/energy_ledger.hpp"
+
+namespace kairos {
+inline namespace core {
+
+std::string_view to_string(EnergyLine line) {
+  constexpr std::array<std::string_view, energy_line_count> names{
+      "field_work",  "driven_work",         "restitution_loss",  "truncation",
+      "late_impact", "position_correction", "conveyor_and_hand", "roundoff"};
+  return names[static_cast<std::size_t>(line)];
+}
+
+void EnergyLedger::open(double kinetic, double potential) {
+  *this = EnergyLedger{};
+  initial_kinetic_ = kinetic;
+  initial_potential_ = potential;
+  balance(kinetic, potential);
+}
+
+double EnergyLedger::unexplained() const {
+  CompensatedSum rest;
+  rest.add(kinetic_);
+  rest.add(-initial_kinetic_);
+  rest.add(potential_);
+  rest.add(-initial_potential_);
+  for (const CompensatedSum& line : lines_) {
+    rest.add(-line.value());
+  }
+  return rest.value();
+}
+
+}  // namespace core
+}  // namespace kairos
