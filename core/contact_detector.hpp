@@ -52,6 +52,10 @@ class ContactDetector {
   [[nodiscard]] virtual TimeOfImpact time_of_separation(const MovingShape& a, const MovingShape& b,
                                                         const Window& window,
                                                         double tolerance) const = 0;
+  /// The thesis' geometric approach (fig. 14): do the boxes that the two shapes sweep over the
+  /// window overlap? A "no" is proven; a "yes" says only that they could have met.
+  [[nodiscard]] virtual bool swept_overlap(const MovingShape& a, const MovingShape& b,
+                                           const Window& window) const = 0;
 };
 
 }  // namespace core
