@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace kairos::experiments {
+
+/// A file that appears whole or not at all: written under a temporary name in the same folder,
+/// flushed to the disk, then renamed. Every write is checked.
+class AtomicFile {
+ public:
+  /// Creates the temporary file. Throws `InputError` where that is impossible.
+  explicit AtomicFile(std::string path);
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  /// Removes what was not published.
+  ~AtomicFile();
+
+  /// Appends. Throws `RunError` where the disk does not take it.
+  void write(std::string_view text);
+  /// Writes what is buffered and waits until the disk has it. Throws `RunError`.
+  void finish();
+  /// Gives the file its name, replacing one that has it. Call after `finish`. Throws `RunError`.
+  void publish();
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  void flush();
+
+  std::string path_;
+  std::string temporary_;
+  std::string buffer_;
+  int descriptor_ = -1;
+};
+
+/// Writes a whole file at once.
+void write_file(const std::string& path, std::string_view text);
+
+}  // namespace kairos::experiments

@@ -1,0 +1,75 @@
+#include "experiments/cli.hpp"
+
+#include "core/error.hpp"
+#include "experiments/commands.hpp"
+#include "experiments/run_error.hpp"
+#include "experiments/version.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <iostream>
+#include <new>
+
+namespace kairos::experiments {
+namespace {
+
+enum ExitCode { done = 0, run_failed = 1, input_wrong = 2 };
+
+int fail(ExitCode code, const char* message) {
+  std::cout.flush();
+  std::cerr << message << '\n';
+  return code;
+}
+
+/// What was printed counts only once it has left: a full disk shows here at the latest.
+int flush_results() {
+  errno = 0;
+  std::cout.flush();
+  const bool written = std::cout.good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  return written ? done
+                 : fail(run_failed,
+                        errno == 0 ? "standard output: cannot be written" : std::strerror(errno));
+}
+
+void add_commands(CLI::App& app) {
+  add_run_command(app);
+  add_explain_command(app);
+  add_list_command(app);
+  add_toi_command(app);
+}
+
+int parse_and_run(int argc, const char* const* argv) {
+  CLI::App app{"What happens between two frames, and what does it cost to know?", "kairos"};
+  app.set_version_flag("--version", "kairos " + std::string(version()));
+  app.require_subcommand(1);
+  app.footer("Exit codes: 0 done, 1 a run failed, 2 the input is wrong.");
+  add_commands(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? flush_results() : input_wrong;
+  }
+  return flush_results();
+}
+
+}  // namespace
+
+int run_command_line(int argc, const char* const* argv) {
+  try {
+    return parse_and_run(argc, argv);
+  } catch (const InputError& error) {
+    return fail(input_wrong, error.what());
+  } catch (const RunError& error) {
+    return fail(run_failed, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(run_failed, "out of memory");
+  } catch (const std::exception& error) {
+    return fail(run_failed, error.what());
+  }
+}
+
+}  // namespace kairos::experiments

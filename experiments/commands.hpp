@@ -1,0 +1,17 @@
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace kairos::experiments {
+
+/// One function and one file (`command_xxx.cpp`) per subcommand, listed in `cli.cpp`. Each adds its
+/// subcommand with options and a callback. A callback writes results to stdout or to files,
+/// messages to stderr, and throws `InputError` (exit 2) or `RunError` (exit 1).
+void add_run_command(CLI::App& app);
+void add_explain_command(CLI::App& app);
+void add_list_command(CLI::App& app);
+void add_toi_command(CLI::App& app);
+
+}  // namespace kairos::experiments

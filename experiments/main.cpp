@@ -1,0 +1,3 @@
+#include "experiments/cli.hpp"
+
+int main(int argc, char** argv) { return kairos::experiments::run_command_line(argc, argv); }

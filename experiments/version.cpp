@@ -1,0 +1,22 @@
+#include "experiments/version.hpp"
+
+#include <Eigen/Core>
+#include <fmt/format.h>
+
+namespace kairos::experiments {
+
+std::string_view version() { return KAIROS_VERSION; }
+
+std::vector<std::pair<std::string, std::string>> versions() {
+#ifdef __clang__
+  constexpr std::string_view compiler = "clang";
+#else
+  constexpr std::string_view compiler = "gcc";
+#endif
+  return {{"kairos", std::string(version())},
+          {std::string(compiler), __VERSION__},
+          {"eigen",
+           fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)}};
+}
+
+}  // namespace kairos::experiments
