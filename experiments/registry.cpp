@@ -1,0 +1,122 @@
+#include "experiments/registry.hpp"
+
+#include "ccd/all_pairs.hpp"
+#include "ccd/bisection.hpp"
+#include "ccd/certified.hpp"
+#include "ccd/conservative_advancement.hpp"
+#include "ccd/sat.hpp"
+#include "core/error.hpp"
+#include "core/laws/newton_law.hpp"
+#include "core/laws/thesis_law.hpp"
+#include "core/model.hpp"
+#include "core/nearest_name.hpp"
+#include "core/schemes/bisected.hpp"
+#include "core/schemes/event_driven.hpp"
+#include "core/schemes/geometric.hpp"
+#include "core/schemes/original.hpp"
+#include "core/schemes/substepped.hpp"
+#include "integrators/catalogue.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <vector>
+
+namespace kairos::experiments {
+namespace {
+
+template <typename Port>
+using Entries = std::vector<std::shared_ptr<const Port>>;
+
+[[noreturn]] void unknown(std::string_view port, std::string_view name,
+                          const std::vector<std::string_view>& names) {
+  throw InputError("", 0, std::string(port),
+                   fmt::format("'{}' is unknown; {}", name, suggestion(name, names)));
+}
+
+/// The entry of that name, by what each says of itself.
+template <typename Port>
+std::shared_ptr<const Port> find(std::string_view port, std::string_view name,
+                                 std::span<const std::shared_ptr<const Port>> entries) {
+  std::vector<std::string_view> names;
+  for (const auto& entry : entries) {
+    if (entry->info().name == name) {
+      return entry;
+    }
+    names.push_back(entry->info().name);
+  }
+  unknown(port, name, names);
+}
+
+const IntegratorEntry& find_entry(std::string_view name) {
+  std::vector<std::string_view> names{"auto"};
+  for (const IntegratorEntry& entry : integrators()) {
+    if (entry.info.name == name) {
+      return entry;
+    }
+    names.push_back(entry.info.name);
+  }
+  unknown("integrator", name, names);
+}
+
+}  // namespace
+
+std::span<const std::shared_ptr<const Scheme>> schemes() {
+  static const Entries<Scheme> entries{make_original(), make_geometric(), make_substepped(),
+                                       make_bisected(), make_event_driven()};
+  return entries;
+}
+
+std::span<const std::shared_ptr<const ContactDetector>> detectors() {
+  static const Entries<ContactDetector> entries{ccd::make_sat(), ccd::make_bisection(),
+                                                ccd::make_conservative_advancement(),
+                                                ccd::make_certified()};
+  return entries;
+}
+
+std::span<const std::shared_ptr<const ImpactLaw>> impact_laws() {
+  static const Entries<ImpactLaw> entries{make_thesis_law(), make_newton_law()};
+  return entries;
+}
+
+std::span<const IntegratorEntry> integrators() {
+  static const std::vector<IntegratorEntry> entries = [] {
+    std::vector<IntegratorEntry> made;
+    for (const auto& [info, make] : integrators::catalogue()) {
+      made.push_back({info, make});
+    }
+    return made;
+  }();
+  return entries;
+}
+
+std::shared_ptr<const Scheme> find_scheme(std::string_view name) {
+  return find("scheme", name, schemes());
+}
+std::shared_ptr<const ContactDetector> find_detector(std::string_view name) {
+  return find("detector", name, detectors());
+}
+std::shared_ptr<const ImpactLaw> find_impact_law(std::string_view name) {
+  return find("impact law", name, impact_laws());
+}
+
+IslandStepper find_integrator(std::string_view name, const StepperOptions& options) {
+  if (name == "auto") {
+    const StepperFactory closed_form = find_entry("closed-form").make;
+    const StepperFactory general = find_entry("rk4").make;
+    return [=](const Model& model, std::size_t island) {
+      return model.closed_form(island) ? closed_form(options) : general(options);
+    };
+  }
+  return
+      [make = find_entry(name).make, options](const Model&, std::size_t) { return make(options); };
+}
+
+BroadPhaseFactory find_broad_phase(std::string_view name) {
+  if (name == "all-pairs") {
+    return [](std::size_t bodies) { return ccd::make_all_pairs(bodies); };
+  }
+  unknown("broad phase", name, {"all-pairs"});
+}
+
+}  // namespace kairos::experiments

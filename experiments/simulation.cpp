@@ -1,0 +1,181 @@
+#include "experiments/simulation.hpp"
+
+#include "core/error.hpp"
+#include "experiments/penetration.hpp"
+#include "experiments/registry.hpp"
+#include "experiments/run_error.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace kairos::experiments {
+namespace {
+
+/// A run of more frames than this would not end within a person's life.
+constexpr double most_frames = 1e13;
+
+/// The names of a choice, resolved.
+struct Plan {
+  std::shared_ptr<const Scheme> scheme;
+  Method method;
+  SchemeOptions options;
+};
+
+void require(bool good, std::string_view key, double value, std::string_view allowed) {
+  if (!good) {
+    throw InputError("", 0, std::string(key), fmt::format("is {}; allowed: {}", value, allowed));
+  }
+}
+
+bool positive(double x) { return std::isfinite(x) && x > 0.0; }
+bool not_negative(double x) { return std::isfinite(x) && x >= 0.0; }
+
+void check_numbers(const RunChoice& choice) {
+  const StepperOptions& stepper = choice.stepper;
+  require(positive(choice.duration.value_or(1.0)), "duration", choice.duration.value_or(1.0),
+          "a finite number > 0 (s)");
+  require(positive(choice.step.value_or(1.0)), "step", choice.step.value_or(1.0),
+          "a finite number > 0 (s)");
+  require(not_negative(choice.threshold), "threshold", choice.threshold,
+          "a finite number > 0 (m), or 0: half of the smallest extent");
+  require(not_negative(choice.toi_tolerance), "tolerance", choice.toi_tolerance,
+          "a finite number > 0 (m), or 0: the detector's default");
+  require(stepper.relative_tolerance >= 0.0, "relative tolerance", stepper.relative_tolerance,
+          "a number >= 0");
+  require(stepper.absolute_tolerance >= 0.0, "absolute tolerance", stepper.absolute_tolerance,
+          "a number >= 0 (m, m/s)");
+  require(choice.max_substeps >= 1, "max substeps", static_cast<double>(choice.max_substeps),
+          "a whole number >= 1");
+}
+
+SchemeOptions scheme_options(const Scene& scene, const RunChoice& choice) {
+  SchemeOptions options;
+  options.frames = choice.frames.value_or(scene.frames);
+  options.duration = choice.duration.value_or(scene.duration);
+  options.step = choice.step.value_or(0.0);
+  options.threshold = choice.threshold;
+  options.equal_substeps = choice.equal_substeps;
+  options.max_substeps = choice.max_substeps;
+  options.toi_tolerance = choice.toi_tolerance;
+  options.roundoff = choice.roundoff;
+  return options;
+}
+
+Plan make_plan(const Model& model, const RunChoice& choice) {
+  check_numbers(choice);
+  Plan plan{find_scheme(choice.method.scheme),
+            {find_integrator(choice.method.integrator, choice.stepper),
+             find_detector(choice.method.detector), find_impact_law(choice.method.impact),
+             find_broad_phase(model.broad_phase())},
+            scheme_options(model.scene(), choice)};
+  const double frame = mean_frame_duration(plan.options.frames);
+  require(positive(frame), "frame", frame, "a finite number > 0 (s)");
+  return plan;
+}
+
+std::string stepper_refusal(const Model& model, const Plan& plan) {
+  for (std::size_t i = 0; i < model.islands().size(); ++i) {
+    const std::unique_ptr<Stepper> stepper = plan.method.stepper(model, i);
+    const std::string reason = stepper->refuses(model.islands()[i]);
+    if (!reason.empty()) {
+      return fmt::format("integrator '{}': {}", stepper->info().name, reason);
+    }
+  }
+  return {};
+}
+
+std::string refusal(const Model& model, const Plan& plan) {
+  const SchemeInfo scheme = plan.scheme->info();
+  const DetectorInfo detector = plan.method.detector->info();
+  if (scheme.needs_location && !detector.locates) {
+    return fmt::format(
+        "scheme '{}' needs to know when two bodies touch; detector '{}' only tells whether they do",
+        scheme.name, detector.name);
+  }
+  if (plan.options.duration / mean_frame_duration(plan.options.frames) > most_frames) {
+    return fmt::format("{} s in frames of {} s are more than {} frames", plan.options.duration,
+                       mean_frame_duration(plan.options.frames), most_frames);
+  }
+  const std::string reason = stepper_refusal(model, plan);
+  return reason.empty() ? plan.scheme->refuses(model, plan.method, plan.options) : reason;
+}
+
+/// No scheme can tell what two solids do that start inside each other.
+void refuse_overlap_at_start(const Model& model) {
+  const State start = model.initial_state();
+  if (const auto found = PenetrationProbe(model).first(start)) {
+    const Body& a = model.body(found->pair.first);
+    const Body& b = model.body(found->pair.second);
+    throw InputError(model.scene().path, b.line, "body." + b.name,
+                     fmt::format("starts {:.3g} m inside body.{} (line {}), and at least one of "
+                                 "them can move; solids must start apart or touching",
+                                 found->depth, a.name, a.line));
+  }
+}
+
+/// The last line of defence: NaN and infinity never travel.
+class FiniteGuard : public Recorder {
+ public:
+  explicit FiniteGuard(Recorder& inner) : inner_(inner) {}
+
+  void begin(const Model& model) override {
+    model_ = &model;
+    inner_.begin(model);
+  }
+  [[nodiscard]] bool wants_motions() const override { return inner_.wants_motions(); }
+  void frame(const Frame& frame) override {
+    for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
+      check(frame.bodies[i], i, frame.time);
+    }
+    inner_.frame(frame);
+  }
+  void motion(BodyIndex body, const Motion& motion) override { inner_.motion(body, motion); }
+  void event(const Event& event) override {
+    check(event.after_a, event.a, event.time);
+    check(event.after_b, event.b, event.time);
+    inner_.event(event);
+  }
+  void stage(Stage stage, double fraction) override { inner_.stage(stage, fraction); }
+
+ private:
+  void check(const BodyState& body, BodyIndex i, Instant t) const {
+    // x - x is 0 for finite x alone; sums keep what is not.
+    const double sum = body.pose.position.sum() + body.pose.orientation.coeffs().sum() +
+                       body.twist.linear.sum() + body.twist.angular.sum();
+    if (!(sum - sum == 0.0)) {
+      throw RunError(
+          fmt::format("not finite: body.{} at t = {} s", model_->body(i).name, t.seconds));
+    }
+  }
+
+  Recorder& inner_;
+  const Model* model_ = nullptr;
+};
+
+}  // namespace
+
+MethodChoice MethodChoice::thesis() { return {"original", "thesis-euler", "sat", "thesis"}; }
+
+std::string why_refused(const Model& model, const RunChoice& choice) {
+  return refusal(model, make_plan(model, choice));
+}
+
+RunResult simulate(const Model& model, const RunChoice& choice, Recorder& recorder) {
+  const Plan plan = make_plan(model, choice);
+  if (const std::string reason = refusal(model, plan); !reason.empty()) {
+    throw InputError(model.scene().path, 0, "", reason);
+  }
+  refuse_overlap_at_start(model);
+  FiniteGuard guard(recorder);
+  return plan.scheme->run(model, plan.method, plan.options, guard);
+}
+
+Simulation simulate(const Scene& scene, const RunChoice& choice) {
+  const Model model(scene);
+  Simulation simulation;
+  simulation.result = simulate(model, choice, simulation.trajectory);
+  return simulation;
+}
+
+}  // namespace kairos::experiments
