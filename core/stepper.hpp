@@ -29,9 +29,20 @@ struct StepResult {
   std::string_view reason;  ///< of a failure
 };
 
+/// One meaning of tolerance for all controlled steppers: the estimated local error of a step is at
+/// most `absolute_tolerance + relative_tolerance |y|` in every component y of the state. An
+/// infinite tolerance switches control off: each step is as long as asked for.
 struct StepperOptions {
   double relative_tolerance = 1e-10;
   double absolute_tolerance = 1e-12;  ///< of positions (m) and velocities (m/s)
+};
+
+/// One body after a step in exact arithmetic (about 106 bits): unevaluated sums high + low.
+struct ReplayedStep {
+  Vector3 position_high = Vector3::Zero();  ///< m
+  Vector3 position_low = Vector3::Zero();
+  Vector3 velocity_high = Vector3::Zero();  ///< m/s
+  Vector3 velocity_low = Vector3::Zero();
 };
 
 /// Port: moves the state of one island between impacts. Owns its memory (a lagged acceleration, a
@@ -53,6 +64,14 @@ class Stepper {
   /// The last step as motions, one per body of the island. They end where `step` left the states,
   /// except that velocity may jump there (the thesis' Euler).
   virtual void dense_output(std::span<Motion> motions) const = 0;
+  /// The last step again, from the states `before` it, in double-double: where its motions are at
+  /// local time `s` (at most what the step advanced) if nothing is rounded. What the computed step
+  /// differs by is roundoff. False, and `after` untouched, where that is not available: forces that
+  /// are not constant. Translation only.
+  virtual bool replay(const Island& /*island*/, double /*s*/, std::span<const BodyState> /*before*/,
+                      std::span<ReplayedStep> /*after*/) const {
+    return false;
+  }
   /// Right-hand sides evaluated so far: the counted cost.
   [[nodiscard]] virtual std::int64_t evaluations() const = 0;
 };

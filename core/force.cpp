@@ -1,0 +1,39 @@
+#include "core/force.hpp"
+
+#include <cassert>
+
+namespace kairos {
+inline namespace core {
+
+void Island::wrenches(Instant t, std::span<const BodyState> states, std::span<Wrench> out) const {
+  assert(states.size() == bodies.size() && out.size() == bodies.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i].force = constant_force[i];
+    out[i].torque.setZero();
+  }
+  for (const Force* force : forces) {
+    force->add(t, states, out);
+  }
+}
+
+Vector3 angular_acceleration(const BodyInertia& inertia, const BodyState& state,
+                             const Vector3& torque) {
+  const Vector3& moments = inertia.principal;
+  assert((moments.array() > 0.0).all());
+  if (moments.x() == moments.y() && moments.y() == moments.z()) {
+    return torque / moments.x();
+  }
+  // Euler's equations in body axes. Differences of moments before products: the gyroscopic term
+  // of equal moments is then zero and not roundoff.
+  const Quaternion to_body = state.pose.orientation.conjugate();
+  const Vector3 w = to_body * state.twist.angular;
+  const Vector3 torque_B = to_body * torque;
+  const Vector3 acceleration_B(
+      (torque_B.x() - (moments.z() - moments.y()) * w.y() * w.z()) / moments.x(),
+      (torque_B.y() - (moments.x() - moments.z()) * w.z() * w.x()) / moments.y(),
+      (torque_B.z() - (moments.y() - moments.x()) * w.x() * w.y()) / moments.z());
+  return state.pose.orientation * acceleration_B;
+}
+
+}  // namespace core
+}  // namespace kairos

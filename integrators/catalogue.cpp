@@ -1,0 +1,22 @@
+#include "integrators/catalogue.hpp"
+
+#include "integrators/closed_form.hpp"
+#include "integrators/euler.hpp"
+#include "integrators/runge_kutta_4.hpp"
+#include "integrators/velocity_verlet.hpp"
+
+namespace kairos::integrators {
+
+std::span<const CatalogueEntry> catalogue() {
+  static const CatalogueEntry entries[] = {
+      {thesis_euler_info, make_thesis_euler},
+      {explicit_euler_info, make_explicit_euler},
+      {symplectic_euler_info, make_symplectic_euler},
+      {velocity_verlet_info, make_velocity_verlet},
+      {rk4_info, make_rk4},
+      {closed_form_info, make_closed_form},
+  };
+  return entries;
+}
+
+}  // namespace kairos::integrators

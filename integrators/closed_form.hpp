@@ -1,0 +1,24 @@
+#pragma once
+
+#include "core/stepper.hpp"
+
+namespace kairos::integrators {
+
+/// The exact motion under constant forces: one `Motion` for any step, infinite steps included (the
+/// states are then left where they are: they have no end). Translation is a parabola; a body turns
+/// at a constant rate if its inertia is spherical or it turns about a principal axis.
+///
+/// The end of a finite step is evaluated in double-double and rounded once, so that energy does
+/// not drift by the rounding of the parabola.
+inline constexpr StepperInfo closed_form_info{.name = "closed-form",
+                                              .order = 0,
+                                              .position_order = 0,
+                                              .velocity_order = 0,
+                                              .symplectic = true,
+                                              .controlled = false,
+                                              .library = "kairos",
+                                              .source = "vanZon2007"};
+
+[[nodiscard]] std::unique_ptr<Stepper> make_closed_form(const StepperOptions& options);
+
+}  // namespace kairos::integrators
