@@ -29,7 +29,7 @@ template <typename Port>
 using Entries = std::vector<std::shared_ptr<const Port>>;
 
 [[noreturn]] void unknown(std::string_view port, std::string_view name,
-                          const std::vector<std::string_view>& names) {
+                          std::span<const std::string_view> names) {
   throw InputError("", 0, std::string(port),
                    fmt::format("'{}' is unknown; {}", name, suggestion(name, names)));
 }
@@ -112,11 +112,16 @@ IslandStepper find_integrator(std::string_view name, const StepperOptions& optio
       [make = find_entry(name).make, options](const Model&, std::size_t) { return make(options); };
 }
 
+std::span<const std::string_view> broad_phases() {
+  static constexpr std::array<std::string_view, 1> names{"all-pairs"};
+  return names;
+}
+
 BroadPhaseFactory find_broad_phase(std::string_view name) {
   if (name == "all-pairs") {
     return [](std::size_t bodies) { return ccd::make_all_pairs(bodies); };
   }
-  unknown("broad phase", name, {"all-pairs"});
+  unknown("broad phase", name, broad_phases());
 }
 
 }  // namespace kairos::experiments

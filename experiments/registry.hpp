@@ -9,9 +9,9 @@
 
 namespace kairos::experiments {
 
-/// The one place where a string becomes a type: it knows the names of both sides of every port and
-/// plugs them together. All functions are thread-safe; unknown names throw `InputError` with the
-/// names that exist.
+// The one place where a string becomes a type: it knows the names of both sides of every port and
+// plugs them together. All functions are thread-safe; unknown names throw `InputError` with the
+// names that exist.
 
 struct IntegratorEntry {
   StepperInfo info;
@@ -22,6 +22,8 @@ struct IntegratorEntry {
 [[nodiscard]] std::span<const IntegratorEntry> integrators();
 [[nodiscard]] std::span<const std::shared_ptr<const ContactDetector>> detectors();
 [[nodiscard]] std::span<const std::shared_ptr<const ImpactLaw>> impact_laws();
+
+[[nodiscard]] std::span<const std::string_view> broad_phases();
 
 [[nodiscard]] std::shared_ptr<const Scheme> find_scheme(std::string_view name);
 [[nodiscard]] std::shared_ptr<const ContactDetector> find_detector(std::string_view name);

@@ -1,0 +1,73 @@
+#include "core/error.hpp"
+#include "experiments/broadcast.hpp"
+#include "experiments/commands.hpp"
+#include "experiments/output_folder.hpp"
+#include "experiments/run_error.hpp"
+#include "experiments/run_files.hpp"
+#include "experiments/run_metrics.hpp"
+#include "experiments/run_options.hpp"
+#include "experiments/run_summary.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+namespace kairos::experiments {
+namespace {
+
+struct RunCommand {
+  SceneOptions scene;
+  RunOptions method;
+  std::optional<std::string> out;
+
+  void run() const;
+};
+
+void RunCommand::run() const {
+  const RunChoice choice = method.choice();
+  const Model model(scene.scene());
+  if (const std::string reason = why_refused(model, choice); !reason.empty()) {
+    throw InputError(model.scene().path, 0, "", reason);  // before a folder is made for it
+  }
+
+  MetricsRecorder metrics;
+  std::vector<Recorder*> listeners{&metrics};
+  std::optional<OutputFolder> folder;
+  std::optional<RunFiles> files;
+  if (out) {
+    folder.emplace(*out);
+    files.emplace(*folder);
+    listeners.push_back(&*files);
+  }
+  Broadcast recorder(listeners);
+  const RunResult result = simulate(model, choice, recorder);
+
+  const FinishedRun finished{model, choice, result, metrics.metrics()};
+  if (folder) {
+    folder->file("summary.json").write(summary_json(finished));
+    folder->publish();
+  }
+  fmt::print("{}", summary_text(finished));
+  if (result.status == RunStatus::stopped) {
+    throw RunError(fmt::format("{}: stopped at t = {} s: {}", model.scene().path,
+                               result.end.seconds, result.reason));
+  }
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app) {
+  const auto command = std::make_shared<RunCommand>();
+  CLI::App* run = app.add_subcommand("run", "Simulate a scene by a method");
+  command->scene.add_to(*run);
+  command->method.add_to(*run);
+  run->add_option("--out", command->out,
+                  "folder for trajectory.csv, events.csv, energy.csv and summary.json")
+      ->type_name("DIR");
+  run->callback([command] { command->run(); });
+}
+
+}  // namespace kairos::experiments
