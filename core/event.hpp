@@ -24,9 +24,9 @@ struct Event {
   EventKind kind = EventKind::impact;
   BodyIndex a = 0;
   BodyIndex b = 0;
-  Contact contact;
-  BodyState before_a, after_a;
-  BodyState before_b, after_b;
+  Contact contact{};
+  BodyState before_a{}, after_a{};  ///< empty for fields
+  BodyState before_b{}, after_b{};
 };
 
 }  // namespace core

@@ -81,9 +81,9 @@ class ThesisLaw final : public ImpactLaw {
                    const Vector3& centre_line, ImpactEnergy& energy) {
     book(giver, offer.momentum, taker.inertia.mass, taker.state.twist.linear, energy);
     const Entity& from = *giver.body.entity;
-    taker.body.entity->give_momentum(taker.body, taker.state,
-                                     {from.physics_type(), offer.momentum,
-                                      normal_for(giver, taker, centre_line), from.nudge()});
+    taker.body.entity->give_momentum(
+        taker.body, taker.state,
+        {from.physics_type(), offer.momentum, normal_for(giver, taker, centre_line), from.nudge()});
   }
 };
 

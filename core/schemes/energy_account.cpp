@@ -1,0 +1,178 @@
+#include "core/schemes/energy_account.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+struct Node {
+  double abscissa;  ///< in [0, 1]
+  double weight;
+};
+/// Gauss-Legendre, 8 points: exact for polynomial power up to degree 15 [Abramowitz1964, 25.4.30].
+constexpr std::array<Node, 8> nodes{{{0.019855071751231884, 0.050614268145188130},
+                                     {0.101666761293186630, 0.111190517226687240},
+                                     {0.237233795041835507, 0.156853322938943644},
+                                     {0.408282678752175098, 0.181341891689180991},
+                                     {0.591717321247824902, 0.181341891689180991},
+                                     {0.762766204958164493, 0.156853322938943644},
+                                     {0.898333238706813370, 0.111190517226687240},
+                                     {0.980144928248768116, 0.050614268145188130}}};
+
+/// 1/2 m (v1^2 - v0^2), factored so that nothing cancels.
+double kinetic_gain(double m, const Vector3& v0, const Vector3& v1) {
+  return 0.5 * m * (v1 - v0).dot(v1 + v0);
+}
+
+double spin_energy(const BodyInertia& inertia, const BodyState& s) {
+  const Vector3 w_B = s.pose.orientation.conjugate() * s.twist.angular;
+  return 0.5 * w_B.dot(inertia.principal.cwiseProduct(w_B));
+}
+
+std::vector<BodyState> gather(const Island& island, std::span<const BodyState> bodies) {
+  std::vector<BodyState> out;
+  out.reserve(island.bodies.size());
+  for (const BodyIndex i : island.bodies) {
+    out.push_back(bodies[i]);
+  }
+  return out;
+}
+
+/// Integral of power over the motions, for a force without a potential.
+double work_along(const Force& force, std::span<const Motion> motions, Instant start,
+                  double duration) {
+  std::vector<BodyState> states(motions.size());
+  std::vector<Wrench> wrenches(motions.size());
+  double work = 0.0;
+  for (const Node& node : nodes) {
+    const Instant t = start + node.abscissa * duration;
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+      const double s = t - motions[k].start;
+      states[k] = {motions[k].pose(s), motions[k].twist(s)};
+      wrenches[k] = {};
+    }
+    force.add(t, states, wrenches);
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+      // Along the Motion: the path's own velocity, which a dense output may tell apart from
+      // `twist`.
+      const Vector3 path_velocity = motions[k].position.derivative(t - motions[k].start);
+      work +=
+          node.weight * duration *
+          (wrenches[k].force.dot(path_velocity) + wrenches[k].torque.dot(states[k].twist.angular));
+    }
+  }
+  return work;
+}
+
+}  // namespace
+
+EnergyAccount::EnergyAccount(const Model& model, EnergyLedger& ledger)
+    : model_(model), ledger_(ledger) {
+  for (BodyIndex i = 0; i < model.size(); ++i) {
+    if (model.is_free(i)) {
+      free_by_name_.push_back(i);
+    }
+  }
+  std::sort(free_by_name_.begin(), free_by_name_.end(),
+            [&](BodyIndex a, BodyIndex b) { return model.body(a).name < model.body(b).name; });
+}
+
+double EnergyAccount::surplus(const Leg& leg) {
+  double surplus = 0.0;
+  for (std::size_t k = 0; k < leg.island.bodies.size(); ++k) {
+    const BodyIndex i = leg.island.bodies[k];
+    const BodyInertia& inertia = leg.island.inertia[k];
+    const BodyState& from = leg.from[i];
+    const BodyState& to = leg.to[i];
+    const Vector3 displacement = to.pose.position - from.pose.position;
+    const double falls = model_.gravity_force(i).dot(displacement);
+    const double other = leg.other_force[i].dot(displacement);
+    ledger_.exchange(falls);
+    if (other != 0.0) {
+      ledger_.add(EnergyLine::field_work, other);
+    }
+    double gain = kinetic_gain(inertia.mass, from.twist.linear, to.twist.linear);
+    if (inertia.rotates) {
+      gain += spin_energy(inertia, to) - spin_energy(inertia, from);
+    }
+    surplus += gain - falls - other;
+  }
+  if (leg.riding_work != 0.0) {
+    ledger_.add(EnergyLine::driven_work, leg.riding_work);
+    surplus -= leg.riding_work;
+  }
+  return surplus;
+}
+
+void EnergyAccount::leg(const Leg& leg) {
+  const double truncation = surplus(leg);
+  if (!leg.exact) {
+    ledger_.add(EnergyLine::truncation, truncation);
+  }
+}
+
+void EnergyAccount::leg(const Leg& leg, std::span<const Motion> motions, Instant start,
+                        double duration) {
+  double truncation = surplus(leg);
+  const std::vector<BodyState> from = gather(leg.island, leg.from);
+  const std::vector<BodyState> to = gather(leg.island, leg.to);
+  for (const Force* force : leg.island.forces) {
+    if (force->conservative()) {
+      const double work = force->potential(start, from) - force->potential(start + duration, to);
+      ledger_.exchange(work);
+      truncation -= work;
+    } else {
+      const double stored = force->potential(start + duration, to) - force->potential(start, from);
+      const double work = work_along(*force, motions, start, duration);
+      ledger_.add(EnergyLine::field_work, work + stored);
+      truncation -= work;
+    }
+  }
+  if (!leg.exact) {
+    ledger_.add(EnergyLine::truncation, truncation);
+  }
+}
+
+void EnergyAccount::open(Instant t, std::span<const BodyState> bodies) {
+  ledger_.open(kinetic(bodies), potential(t, bodies));
+}
+
+void EnergyAccount::balance(Instant t, std::span<const BodyState> bodies) {
+  ledger_.balance(kinetic(bodies), potential(t, bodies));
+}
+
+double EnergyAccount::kinetic(std::span<const BodyState> bodies) const {
+  CompensatedSum sum;
+  for (const BodyIndex i : free_by_name_) {
+    sum.add(model_.kinetic_energy(i, bodies[i]));
+  }
+  return sum.value();
+}
+
+double EnergyAccount::potential(Instant t, std::span<const BodyState> bodies) const {
+  CompensatedSum sum;
+  for (const BodyIndex i : free_by_name_) {
+    sum.add(model_.gravity_potential(i, bodies[i].pose.position));
+  }
+  for (const Island& island : model_.islands()) {
+    if (!island.forces.empty()) {
+      sum.add(island_potential(island, t, bodies));
+    }
+  }
+  return sum.value();
+}
+
+double EnergyAccount::island_potential(const Island& island, Instant t,
+                                       std::span<const BodyState> bodies) const {
+  const std::vector<BodyState> states = gather(island, bodies);
+  double sum = 0.0;
+  for (const Force* force : island.forces) {
+    sum += force->potential(t, states);
+  }
+  return sum;
+}
+
+}  // namespace core
+}  // namespace kairos

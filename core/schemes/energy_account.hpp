@@ -1,0 +1,61 @@
+#pragma once
+
+#include "core/energy_ledger.hpp"
+#include "core/model.hpp"
+#include "core/motion.hpp"
+
+#include <span>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+
+/// One island over one stretch of time, as the ledger books it.
+struct Leg {
+  const Island& island;
+  std::span<const BodyState> from;  ///< indexed by `BodyIndex`
+  std::span<const BodyState> to;    ///< indexed by `BodyIndex`
+  std::span<const Vector3>
+      other_force;           ///< N per body: what acts beside gravity, constant; by `BodyIndex`
+  bool exact = false;        ///< the stepper has no truncation error
+  double riding_work = 0.0;  ///< of a driven surface on a ball that it carries, J
+};
+
+/// Books what forces did to the bodies between two states, line by line (see `EnergyLine`).
+class EnergyAccount {
+ public:
+  EnergyAccount(const Model& model, EnergyLedger& ledger);
+
+  /// Sets the energy that everything is compared with.
+  void open(Instant t, std::span<const BodyState> bodies);
+  /// Tells the ledger the energy at t.
+  void balance(Instant t, std::span<const BodyState> bodies);
+
+  /// Constant forces only: their work is force times displacement, exactly.
+  /// truncation = change of kinetic energy - work of all forces along the motion.
+  void leg(const Leg& leg);
+  /// The same with state-dependent forces, whose work is minus the change of their potential, or
+  /// where they have none the integral of F dp along the motions (Gauss-Legendre, 8 points).
+  /// `motions`: one per body of the island, covering [start, start + duration].
+  void leg(const Leg& leg, std::span<const Motion> motions, Instant start, double duration);
+
+  /// A body was moved without time passing: work against gravity.
+  void moved(BodyIndex i, const Vector3& displacement) {
+    ledger_.add(EnergyLine::position_correction, -model_.gravity_force(i).dot(displacement));
+  }
+
+ private:
+  /// Kinetic energy gained minus work of gravity and `other_force`, J; books the latter.
+  double surplus(const Leg& leg);
+  [[nodiscard]] double kinetic(std::span<const BodyState> bodies) const;
+  [[nodiscard]] double potential(Instant t, std::span<const BodyState> bodies) const;
+  [[nodiscard]] double island_potential(const Island& island, Instant t,
+                                        std::span<const BodyState> bodies) const;
+
+  const Model& model_;
+  EnergyLedger& ledger_;
+  std::vector<BodyIndex> free_by_name_;  ///< sums must not depend on the order in the file
+};
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,302 @@
+#include "core/schemes/event_world.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+// Motions, frames and the ledger; predictions and impacts are in files of their own.
+
+namespace kairos {
+inline namespace core {
+
+EventWorld::EventWorld(const Model& model, const Method& method, const SchemeOptions& options,
+                       Recorder& recorder)
+    : model_(model),
+      detector_(*method.detector),
+      law_(*method.law),
+      options_(options),
+      recorder_(recorder),
+      wants_motions_(recorder.wants_motions()),
+      by_rank_(model.size()),
+      rank_(model.size()),
+      actors_(model.size()),
+      now_(model.initial_state()),
+      booked_(now_),
+      drawn_(now_),
+      field_forces_(model.size(), Vector3::Zero()),
+      end_(Instant{} + options.duration),
+      account_(model, ledger_) {
+  for (BodyIndex i = 0; i < model.size(); ++i) {
+    by_rank_[i] = i;
+  }
+  std::sort(by_rank_.begin(), by_rank_.end(),
+            [&](BodyIndex a, BodyIndex b) { return model.body(a).name < model.body(b).name; });
+  for (std::uint32_t r = 0; r < by_rank_.size(); ++r) {
+    rank_[by_rank_[r]] = r;
+  }
+  for (const BodyIndex i : by_rank_) {
+    for (const BodyIndex j : by_rank_) {
+      if (i != j && model.interacts(i, j)) {
+        actors_[i].partners.push_back(j);
+      }
+    }
+  }
+  for (std::size_t k = 0; k < model.islands().size(); ++k) {
+    Flow flow{.island = model.islands()[k], .stepper = method.stepper(model, k)};
+    flow.exact = flow.stepper->info().order == 0;
+    flow.states.resize(flow.island.bodies.size());
+    flow.motions.resize(flow.island.bodies.size());
+    flows_.push_back(std::move(flow));
+  }
+  recorder_.begin(model_);
+  account_.open(time_, now_);
+}
+
+void EventWorld::begin() {
+  for (const BodyIndex i : by_rank_) {
+    switch (model_.mobility(i)) {
+      case Mobility::fixed:
+        actors_[i].motion = Motion::at_rest(time_, now_[i].pose);
+        break;
+      case Mobility::driven:
+        drive(i, time_);
+        break;
+      case Mobility::free:
+        break;
+    }
+  }
+  for (const BodyIndex i : by_rank_) {
+    if (model_.is_free(i) && flow_of(i).island.bodies.front() == i) {
+      Flow& flow = flow_of(i);
+      set_forces(flow);
+      for (std::size_t k = 0; k < flow.states.size(); ++k) {
+        flow.states[k] = now_[flow.island.bodies[k]];
+      }
+      flow.stepper->start(flow.island, time_, flow.states);
+      next_segment(flow, time_);
+    }
+  }
+  for (const auto& [a, b] : model_.pairs()) {
+    predict_pair(a, b, time_);
+  }
+}
+
+// --- Motions -----------------------------------------------------------------------------------
+
+BodyState EventWorld::state_at(BodyIndex i, Instant t) const {
+  const Motion& motion = actors_[i].motion;
+  const double s = std::min(t - motion.start, motion.duration);
+  return {motion.pose(s), motion.twist(s)};
+}
+
+Vector3 EventWorld::field_force(BodyIndex i) const {
+  Vector3 sum = Vector3::Zero();
+  for (const BodyIndex field : actors_[i].fields) {
+    model_.entity(i).give_force(sum,
+                                model_.entity(field).get_force(model_.body(field), now_[field]));
+  }
+  return sum;
+}
+
+Vector3 EventWorld::net_force(BodyIndex i) const {
+  return model_.gravity_force(i) + field_forces_[i];
+}
+
+void EventWorld::set_forces(Flow& flow) {
+  flow.island.forces = model_.islands()[model_.island_of(flow.island.bodies.front())].forces;
+  flow.support.reset();
+  for (std::size_t k = 0; k < flow.island.bodies.size(); ++k) {
+    const BodyIndex i = flow.island.bodies[k];
+    field_forces_[i] = field_force(i);
+    Vector3 force = net_force(i);
+    if (const auto& support = actors_[i].support) {
+      force -= support->normal * support->normal.dot(force);
+      if (!flow.island.forces.empty()) {
+        flow.support = std::make_unique<SupportForce>(support->normal);
+        flow.island.forces.push_back(flow.support.get());
+      }
+    }
+    flow.island.constant_force[k] = force;
+  }
+}
+
+/// The state of the island of i has jumped to what `now_` says of i: new motions from there.
+void EventWorld::launch(BodyIndex i, Instant t) {
+  Flow& flow = flow_of(i);
+  set_forces(flow);
+  for (std::size_t k = 0; k < flow.states.size(); ++k) {
+    flow.states[k] = now_[flow.island.bodies[k]];
+  }
+  flow.stepper->restart(flow.island, t, flow.states);
+  next_segment(flow, t);
+}
+
+void EventWorld::next_segment(Flow& flow, Instant t) {
+  for (std::size_t k = 0; k < flow.states.size(); ++k) {
+    booked_[flow.island.bodies[k]] = flow.states[k];
+  }
+  flow.booked = t;
+  const double left = end_ - t;
+  const double longest = options_.step > 0.0 ? options_.step : mean_frame_duration(options_.frames);
+  const double h = flow.exact ? left : std::min(left, longest);
+  if (!(h > 0.0)) {
+    return;  // the run ends here
+  }
+  ++cost_.steps;
+  const StepResult step = flow.stepper->step(flow.island, t, h, flow.states);
+  if (!step.ok || !(step.advanced > 0.0)) {
+    stop(t, "integrator: " + std::string(step.reason));
+    return;
+  }
+  flow.stepper->dense_output(flow.motions);
+  for (std::size_t k = 0; k < flow.motions.size(); ++k) {
+    set_motion(flow.island.bodies[k], flow.motions[k]);
+  }
+  hold(flow, t);
+  const BodyIndex first = flow.island.bodies.front();
+  if (t + step.advanced < end_) {
+    push(t + step.advanced, Due::segment_end, first, first);
+  }
+}
+
+void EventWorld::set_motion(BodyIndex i, const Motion& motion) {
+  actors_[i].motion = motion;
+  ++actors_[i].version;
+  if (wants_motions_) {
+    recorder_.motion(i, motion);
+  }
+}
+
+/// A supported ball rides on its surface until its face ends or draws away.
+void EventWorld::hold(Flow& flow, Instant t) {
+  const BodyIndex i = flow.island.bodies.front();
+  Actor& actor = actors_[i];
+  if (!actor.support) {
+    return;
+  }
+  const BodyIndex surface = actor.support->surface;
+  const Motion under = actors_[surface].motion.shifted(t - actors_[surface].motion.start);
+  double until = face_exit_time(model_.shape(surface), under, actor.motion, actor.support->normal);
+  if (model_.mobility(surface) == Mobility::driven) {
+    until = std::min(until, lift_off_time(under, actor.support->normal, flow.island.inertia[0].mass,
+                                          net_force(i)));
+    actor.motion = ride(actor.motion, under, actor.support->normal);
+    if (wants_motions_) {
+      recorder_.motion(i, actor.motion);
+    }
+  }
+  if (t + until < end_) {
+    push(t + until, Due::support_ends, i, surface);
+  }
+}
+
+void EventWorld::drive(BodyIndex i, Instant t) {
+  const double left = end_ - t;
+  if (!(left > 0.0)) {
+    return;
+  }
+  set_motion(i, model_.body(i).drive->motion(t, left));
+  now_[i] = state_at(i, t);
+  if (actors_[i].motion.end() < end_) {
+    push(actors_[i].motion.end(), Due::segment_end, i, i);
+  }
+}
+
+void EventWorld::segment_end(BodyIndex i, Instant t) {
+  if (model_.mobility(i) == Mobility::driven) {
+    drive(i, t);
+    riders(i, t);
+    predict(i, t);
+    return;
+  }
+  Flow& flow = flow_of(i);
+  book(flow, t);
+  next_segment(flow, t);
+  for (const BodyIndex k : flow.island.bodies) {
+    predict(k, t);
+  }
+}
+
+// --- Ledger and frames -------------------------------------------------------------------------
+
+void EventWorld::book(Flow& flow, Instant t) {
+  const double duration = t - flow.booked;
+  if (!(duration > 0.0)) {
+    return;
+  }
+  for (const BodyIndex i : flow.island.bodies) {
+    now_[i] = state_at(i, t);
+  }
+  double riding = 0.0;
+  const BodyIndex first = flow.island.bodies.front();
+  if (const auto& support = actors_[first].support;
+      support && model_.mobility(support->surface) == Mobility::driven) {
+    // The normal force m a_s.n - F.n, integrated over the surface's displacement along n.
+    const Vector3& n = support->normal;
+    const double v0 = n.dot(booked_[first].twist.linear);
+    const double v1 = n.dot(now_[first].twist.linear);
+    const double rise = n.dot(now_[first].pose.position - booked_[first].pose.position);
+    riding =
+        0.5 * flow.island.inertia[0].mass * (v1 - v0) * (v1 + v0) - n.dot(net_force(first)) * rise;
+  }
+  const Leg leg{flow.island, booked_, now_, field_forces_, flow.exact, riding};
+  if (flow.island.forces.empty()) {
+    account_.leg(leg);
+  } else {
+    for (std::size_t k = 0; k < flow.motions.size(); ++k) {
+      flow.motions[k] = actors_[flow.island.bodies[k]].motion;
+    }
+    account_.leg(leg, flow.motions, flow.booked, duration);
+  }
+  for (const BodyIndex i : flow.island.bodies) {
+    booked_[i] = now_[i];
+  }
+  flow.booked = t;
+}
+
+bool EventWorld::draw() {
+  const Instant t = next_frame_;
+  time_ = t;
+  for (Flow& flow : flows_) {
+    book(flow, t);
+  }
+  for (BodyIndex i = 0; i < actors_.size(); ++i) {
+    drawn_[i] = model_.mobility(i) == Mobility::fixed ? now_[i] : state_at(i, t);
+  }
+  account_.balance(t, drawn_);
+  recorder_.stage(Stage::draw, 1.0);
+  recorder_.frame({frame_index_, t, drawn_, ledger_});
+  ++cost_.frames;
+  const double left = end_ - t;
+  const double frame = frame_duration(options_.frames, frame_index_);
+  ++frame_index_;
+  if (left <= 1e-9 * frame) {  // a remainder that only rounding left over
+    return false;
+  }
+  next_frame_ = frame < left ? t + frame : end_;
+  return true;
+}
+
+void EventWorld::stop(Instant t, std::string reason) {
+  if (reason_.empty()) {
+    reason_ = std::move(reason);
+    next_frame_ = t;
+    end_ = t;
+  }
+}
+
+RunResult EventWorld::result() && {
+  for (const Flow& flow : flows_) {
+    cost_.right_hand_sides += flow.stepper->evaluations();
+  }
+  return {reason_.empty() ? RunStatus::completed : RunStatus::stopped,
+          std::move(reason_),
+          time_,
+          std::move(drawn_),
+          ledger_,
+          cost_};
+}
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,131 @@
+#pragma once
+
+#include "core/model.hpp"
+#include "core/scheme.hpp"
+#include "core/schemes/energy_account.hpp"
+#include "core/schemes/event_queue.hpp"
+#include "core/schemes/support.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+
+/// The asynchronous world of `event-driven`: every body has its own current motion and version,
+/// and a queue holds what is due. Nothing here works over all bodies, except drawing a frame.
+///
+/// The life of a motion: an island is *launched* at a state (its stepper says how it moves), its
+/// pairs are *predicted* (the detector says when they meet), and what was predicted is due until
+/// one of the two bodies is launched again.
+class EventWorld {
+ public:
+  EventWorld(const Model& model, const Method& method, const SchemeOptions& options,
+             Recorder& recorder);
+
+  /// Launches every body and predicts every pair.
+  void begin();
+  [[nodiscard]] bool stopped() const { return !reason_.empty(); }
+  /// Whether something is due before the next frame is drawn.
+  [[nodiscard]] bool due() const { return !queue_.empty() && queue_.top().time < next_frame_; }
+  /// Takes the earliest event; stale ones change nothing.
+  void take();
+  /// Draws the frame that is due; false when it was the last.
+  bool draw();
+  [[nodiscard]] RunResult result() &&;
+
+ private:
+  /// A body as the queue knows it.
+  struct Actor {
+    Motion motion;
+    std::uint32_t version = 0;
+    std::optional<Support> support;
+    Instant contact_begins = Instant::never();  ///< when its bounces have died down
+    std::vector<BodyIndex> partners;            ///< it can interact with, by name
+    std::vector<BodyIndex> fields;              ///< it is in
+    int creeping = 0;                           ///< impacts in a row between which nothing moved
+    Vector3 last_impact = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
+  };
+  struct Flow {
+    Island island;
+    std::unique_ptr<Stepper> stepper;
+    bool exact = false;
+    std::vector<BodyState> states{};  ///< at the end of the segment
+    std::vector<Motion> motions{};
+    std::unique_ptr<SupportForce> support{};  ///< while it slides under state-dependent forces
+    Instant booked{};                         ///< how far the ledger has followed it
+  };
+
+  // Motions
+  void launch(BodyIndex i, Instant t);       ///< the island of i, from `now_state`
+  void next_segment(Flow& flow, Instant t);  ///< one stepper step, as motions
+  void drive(BodyIndex i, Instant t);        ///< the next motion of a driven body
+  void set_forces(Flow& flow);
+  void set_motion(BodyIndex i, const Motion& motion);
+  void hold(Flow& flow, Instant t);  ///< keeps a supported ball on its surface
+  [[nodiscard]] BodyState state_at(BodyIndex i, Instant t) const;
+  [[nodiscard]] Vector3 field_force(BodyIndex i) const;
+  [[nodiscard]] Vector3 net_force(BodyIndex i) const;
+
+  // Predictions
+  void predict(BodyIndex i, Instant t);
+  void predict_pair(BodyIndex i, BodyIndex j, Instant t);
+  void predict_meeting(BodyIndex a, BodyIndex b, Instant t, double duration);
+  void predict_parting(BodyIndex a, BodyIndex b, Instant t, double duration, Due due);
+  void push(Instant t, Due due, BodyIndex a, BodyIndex b, double patience = 0.0);
+
+  // Events
+  void impact(BodyIndex a, BodyIndex b, Instant t, double patience);
+  void land(BodyIndex a, BodyIndex b, const Contact& contact, Instant t);
+  void settle(BodyIndex ball, const Support& support, double rebound, double pressing, double e,
+              Instant t);
+  void resume_support(BodyIndex i, Instant t);
+  void leave_support(BodyIndex i, Instant t);
+  void end_contact(BodyIndex i, Instant t);
+  void begin_contact(BodyIndex i, Instant t);
+  void riders(BodyIndex surface, Instant t);
+  void cross_field(BodyIndex a, BodyIndex b, Instant t, bool entering);
+  void segment_end(BodyIndex i, Instant t);
+  void relaunch(BodyIndex a, BodyIndex b, Instant t);
+  [[nodiscard]] bool creeps(BodyIndex i, double reach);
+  [[nodiscard]] double rest_tolerance(BodyIndex a, BodyIndex b, double e) const;
+  void note(EventKind kind, BodyIndex a, BodyIndex b, Instant t);
+  void stop(Instant t, std::string reason);
+
+  // Ledger
+  void book(Flow& flow, Instant t);
+
+  [[nodiscard]] Flow& flow_of(BodyIndex i) { return flows_[model_.island_of(i)]; }
+  [[nodiscard]] std::string names(BodyIndex a, BodyIndex b) const;
+
+  const Model& model_;
+  const ContactDetector& detector_;
+  const ImpactLaw& law_;
+  const SchemeOptions& options_;
+  Recorder& recorder_;
+  const bool wants_motions_;
+
+  std::vector<BodyIndex> by_rank_;  ///< bodies in the order of their names
+  std::vector<std::uint32_t> rank_;
+  std::vector<Actor> actors_;
+  std::vector<Flow> flows_;
+  State now_;     ///< states being changed by the event at hand
+  State booked_;  ///< where the ledger is
+  State drawn_;   ///< scratch for frames
+  std::vector<Vector3> field_forces_;
+  EventQueue queue_;
+
+  Instant time_;  ///< of the last event or frame
+  Instant end_;
+  Instant next_frame_;
+  std::int64_t frame_index_ = 0;
+  std::string reason_;
+  EnergyLedger ledger_;
+  EnergyAccount account_;
+  Cost cost_;
+};
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "core/force.hpp"
+#include "core/model.hpp"
+#include "core/motion.hpp"
+
+#include <optional>
+
+namespace kairos {
+inline namespace core {
+
+/// A ball that rests or slides on one face of a body that it cannot move.
+struct Support {
+  BodyIndex surface = 0;
+  Vector3 normal = Vector3::Zero();  ///< of the face, unit, from the surface to the ball, world
+};
+
+/// The face on which `ball` could be supported where it touches `surface` with this normal (from
+/// the surface to the ball), if there is one: the surface is a half-space or a box that does not
+/// turn, the normal is that of a face, and the ball's centre is above the face.
+[[nodiscard]] std::optional<Support> find_support(const Model& model, BodyIndex ball,
+                                                  const Vector3& centre, BodyIndex surface,
+                                                  const Motion& surface_motion, double s,
+                                                  const Vector3& normal);
+
+/// When the ball's centre passes an edge of the face, local to both motions' common start, s;
+/// infinite if not while the motions last.
+[[nodiscard]] double face_exit_time(const Shape& surface, const Motion& surface_motion,
+                                    const Motion& ball_motion, const Vector3& normal);
+
+/// When a driven surface draws away faster than the force on the ball (N) can follow: the first
+/// zero of the contact force m a_s.n - F.n, local to the surface's motion, s; infinite if none.
+[[nodiscard]] double lift_off_time(const Motion& surface_motion, const Vector3& normal, double mass,
+                                   const Vector3& force);
+
+/// Lets a motion along a surface ride with it: adds the surface's displacement and velocity along
+/// the normal. Both motions start together; the surface does not turn.
+[[nodiscard]] Motion ride(const Motion& along, const Motion& surface_motion, const Vector3& normal);
+
+/// Takes from the forces on a ball what presses it against the surface. To be the last force of
+/// its island.
+class SupportForce final : public Force {
+ public:
+  explicit SupportForce(const Vector3& normal) : normal_(normal) {}
+  void add(Instant t, std::span<const BodyState> bodies, std::span<Wrench> wrenches) const override;
+  [[nodiscard]] double potential(Instant, std::span<const BodyState>) const override { return 0.0; }
+  [[nodiscard]] bool conservative() const override { return true; }
+  [[nodiscard]] std::string description() const override { return "support"; }
+
+ private:
+  Vector3 normal_;
+};
+
+}  // namespace core
+}  // namespace kairos
