@@ -1,0 +1,30 @@
+#pragma once
+
+#include "core/force.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace kairos::integrators::test {
+
+/// A smooth initial-value problem of one body with its solution at sampled times.
+struct Problem {
+  std::string name;
+  Island island;
+  std::vector<std::unique_ptr<const Force>> forces;  ///< what `island.forces` points to
+  BodyState initial;
+  double duration = 0.0;            ///< s
+  std::vector<double> times;        ///< s, ascending, the last is `duration`
+  std::vector<BodyState> solution;  ///< at `times`, to about 1e-17 of its scale
+};
+
+/// A planet on an ellipse that also turns as an asymmetric heavy top: both parts nonlinear, forces
+/// that depend on position and orientation alone.
+[[nodiscard]] const Problem& kepler_top();
+/// A free asymmetric top on a parabola.
+[[nodiscard]] const Problem& free_top();
+/// A damped spring to an anchor that is shaken: depends on velocity and time. Does not rotate.
+[[nodiscard]] const Problem& shaken_spring();
+
+}  // namespace kairos::integrators::test
