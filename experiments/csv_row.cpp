@@ -32,6 +32,12 @@ CsvRow& CsvRow::text(std::string_view value) {
   return *this;
 }
 
+CsvRow& CsvRow::field(std::string_view value) {
+  separate();
+  line_ += value;
+  return *this;
+}
+
 CsvRow& CsvRow::number(double value) {
   assert(std::isfinite(value));
   separate();

@@ -13,6 +13,8 @@ namespace kairos::experiments {
 class CsvRow {
  public:
   CsvRow& text(std::string_view value);
+  /// A field of another CSV file, quotes included.
+  CsvRow& field(std::string_view value);
   CsvRow& number(double value);
   CsvRow& count(std::int64_t value);
   CsvRow& vector(const Vector3& value);

@@ -1,0 +1,70 @@
+#pragma once
+
+#include "core/motion.hpp"
+#include "core/shape.hpp"
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kairos::experiments {
+
+/// One row of a file of queries: two shapes, how they move, and for how long.
+struct ToiQuery {
+  std::string_view id;  ///< as written, quotes included: a view of the row
+  Shape shape_a, shape_b;
+  Motion motion_a, motion_b;
+  double duration = 0.0;  ///< s
+};
+
+/// What is wrong with a row, to be named with its line.
+struct BadField {
+  std::string_view column;
+  std::string reason;
+};
+
+/// Where the columns of a file of queries are, and how its rows are read. Const after
+/// construction; shared by threads.
+class ToiQueryFormat {
+ public:
+  /// `header` is the first line; `file` is for messages. Throws `InputError`.
+  ToiQueryFormat(std::string_view header, const std::string& file);
+
+  /// Memory that reading a row uses: one per thread.
+  struct Scratch {
+    std::vector<std::string_view> fields;
+  };
+  /// Reads a row. Throws `BadField`.
+  [[nodiscard]] ToiQuery read(std::string_view row, Scratch& scratch) const;
+  /// The id of a row that may be bad; empty if it has none.
+  [[nodiscard]] std::string_view id(std::string_view row, Scratch& scratch) const;
+
+ private:
+  static constexpr std::size_t numbers_per_body = 19;
+  static constexpr std::size_t absent = static_cast<std::size_t>(-1);
+
+  /// Columns of one body: its numbers in the order of `number_names`, and the optional shape.
+  struct BodyColumns {
+    std::array<std::size_t, numbers_per_body> number{};
+    std::array<std::string, numbers_per_body> name;
+    std::size_t shape = absent;
+    std::string shape_name;
+  };
+
+  class Body;
+  [[nodiscard]] BodyColumns body_columns(const std::string& prefix) const;
+  [[nodiscard]] std::size_t find(const std::string& name) const;
+  [[nodiscard]] std::size_t need(const std::string& name) const;
+
+  std::string file_;
+  std::vector<std::string> columns_;
+  BodyColumns a_, b_;
+  std::size_t id_ = 0;
+  std::size_t duration_ = 0;
+};
+
+/// Splits a line of CSV at the commas that are not inside quotes. False where a quote stays open.
+[[nodiscard]] bool split_fields(std::string_view line, std::vector<std::string_view>& fields);
+
+}  // namespace kairos::experiments
