@@ -1,0 +1,10 @@
+#pragma once
+
+#include <cstddef>
+
+namespace kairos::integrators::test {
+
+/// How often this program has called `operator new` so far.
+[[nodiscard]] std::size_t allocations();
+
+}  // namespace kairos::integrators::test
