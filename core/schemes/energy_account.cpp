@@ -68,6 +68,23 @@ double work_along(const Force& force, std::span<const Motion> motions, Instant s
 
 }  // namespace
 
+double roundoff_energy(double mass, const Vector3& force, const BodyState& computed,
+                       const ReplayedStep& exact) {
+  const Vector3 dv = (computed.twist.linear - exact.velocity_high) - exact.velocity_low;
+  const Vector3 dp = (computed.pose.position - exact.position_high) - exact.position_low;
+  return mass * (computed.twist.linear - 0.5 * dv).dot(dv) - force.dot(dp);
+}
+
+Vector3 field_force(const Model& model, BodyIndex field, const BodyState& field_state,
+                    BodyIndex body) {
+  const Vector3 offered = model.entity(field).get_force(model.body(field), field_state);
+  const bool per_mass = model.scene().gravity == GravityMode::acceleration;
+  Vector3 taken = Vector3::Zero();
+  model.entity(body).give_force(taken,
+                                per_mass ? Vector3(model.inertia(body).mass * offered) : offered);
+  return taken;
+}
+
 EnergyAccount::EnergyAccount(const Model& model, EnergyLedger& ledger)
     : model_(model), ledger_(ledger) {
   for (BodyIndex i = 0; i < model.size(); ++i) {
@@ -98,6 +115,10 @@ double EnergyAccount::surplus(const Leg& leg) {
       gain += spin_energy(inertia, to) - spin_energy(inertia, from);
     }
     surplus += gain - falls - other;
+  }
+  if (leg.roundoff != 0.0) {
+    ledger_.add(EnergyLine::roundoff, leg.roundoff);
+    surplus -= leg.roundoff;
   }
   if (leg.riding_work != 0.0) {
     ledger_.add(EnergyLine::driven_work, leg.riding_work);

@@ -3,6 +3,7 @@
 #include "core/energy_ledger.hpp"
 #include "core/model.hpp"
 #include "core/motion.hpp"
+#include "core/stepper.hpp"
 
 #include <span>
 #include <vector>
@@ -18,8 +19,19 @@ struct Leg {
   std::span<const Vector3>
       other_force;           ///< N per body: what acts beside gravity, constant; by `BodyIndex`
   bool exact = false;        ///< the stepper has no truncation error
+  double roundoff = 0.0;     ///< of the step, where a replay told it, J
   double riding_work = 0.0;  ///< of a driven surface on a ball that it carries, J
 };
+
+/// What roundoff did to the energy of a body between a step in exact arithmetic and the same step
+/// as computed, under the constant force (N): m (v.dv - dv^2/2) - F.dp, J.
+[[nodiscard]] double roundoff_energy(double mass, const Vector3& force, const BodyState& computed,
+                                     const ReplayedStep& exact);
+
+/// What a field does to a body that overlaps it, N. A field tells its force in the unit of G: per
+/// kg of what it acts on, where gravity is an acceleration.
+[[nodiscard]] Vector3 field_force(const Model& model, BodyIndex field, const BodyState& field_state,
+                                  BodyIndex body);
 
 /// Books what forces did to the bodies between two states, line by line (see `EnergyLine`).
 class EnergyAccount {

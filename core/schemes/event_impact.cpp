@@ -255,7 +255,7 @@ void EventWorld::resume_support(BodyIndex i, Instant t) {
   const double s = std::min(t - under.start, under.duration);
   const double away = support.normal.dot(now_[i].twist.linear - under.twist(s).linear);
   const double pressing = support.normal.dot(
-      under.acceleration(s) - (model_.gravity_force(i) + field_force(i)) / model_.inertia(i).mass);
+      under.acceleration(s) - (model_.gravity_force(i) + fields_at(i)) / model_.inertia(i).mass);
   const double tolerance = rest_tolerance(i, support.surface, 0.0);
   if (pressing > 0.0 && away * away <= 2.0 * pressing * tolerance) {
     const double ground = support.normal.dot(under.twist(s).linear);

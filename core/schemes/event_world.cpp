@@ -90,11 +90,10 @@ BodyState EventWorld::state_at(BodyIndex i, Instant t) const {
   return {motion.pose(s), motion.twist(s)};
 }
 
-Vector3 EventWorld::field_force(BodyIndex i) const {
+Vector3 EventWorld::fields_at(BodyIndex i) const {
   Vector3 sum = Vector3::Zero();
   for (const BodyIndex field : actors_[i].fields) {
-    model_.entity(i).give_force(sum,
-                                model_.entity(field).get_force(model_.body(field), now_[field]));
+    sum += field_force(model_, field, now_[field], i);
   }
   return sum;
 }
@@ -108,7 +107,7 @@ void EventWorld::set_forces(Flow& flow) {
   flow.support.reset();
   for (std::size_t k = 0; k < flow.island.bodies.size(); ++k) {
     const BodyIndex i = flow.island.bodies[k];
-    field_forces_[i] = field_force(i);
+    field_forces_[i] = fields_at(i);
     Vector3 force = net_force(i);
     if (const auto& support = actors_[i].support) {
       force -= support->normal * support->normal.dot(force);
@@ -137,6 +136,10 @@ void EventWorld::next_segment(Flow& flow, Instant t) {
     booked_[flow.island.bodies[k]] = flow.states[k];
   }
   flow.booked = t;
+  if (options_.roundoff) {
+    flow.launched = flow.states;
+    flow.roundoff = 0.0;
+  }
   const double left = end_ - t;
   const double longest = options_.step > 0.0 ? options_.step : mean_frame_duration(options_.frames);
   const double h = flow.exact ? left : std::min(left, longest);
@@ -240,7 +243,9 @@ void EventWorld::book(Flow& flow, Instant t) {
     riding =
         0.5 * flow.island.inertia[0].mass * (v1 - v0) * (v1 + v0) - n.dot(net_force(first)) * rise;
   }
-  const Leg leg{flow.island, booked_, now_, field_forces_, flow.exact, riding};
+  const Leg leg{flow.island,   booked_,    now_,
+                field_forces_, flow.exact, options_.roundoff ? new_roundoff(flow, t) : 0.0,
+                riding};
   if (flow.island.forces.empty()) {
     account_.leg(leg);
   } else {
@@ -253,6 +258,22 @@ void EventWorld::book(Flow& flow, Instant t) {
     booked_[i] = now_[i];
   }
   flow.booked = t;
+}
+
+/// Roundoff of the current segment since the ledger last looked, J.
+double EventWorld::new_roundoff(Flow& flow, Instant t) {
+  const BodyIndex first = flow.island.bodies.front();
+  flow.replayed.resize(flow.launched.size());
+  if (!flow.stepper->replay(flow.island, t - actors_[first].motion.start, flow.launched,
+                            flow.replayed)) {
+    return 0.0;
+  }
+  double sum = 0.0;
+  for (std::size_t k = 0; k < flow.replayed.size(); ++k) {
+    sum += roundoff_energy(flow.island.inertia[k].mass, flow.island.constant_force[k],
+                           now_[flow.island.bodies[k]], flow.replayed[k]);
+  }
+  return sum - std::exchange(flow.roundoff, sum);
 }
 
 bool EventWorld::draw() {

@@ -55,7 +55,10 @@ class EventWorld {
     std::vector<BodyState> states{};  ///< at the end of the segment
     std::vector<Motion> motions{};
     std::unique_ptr<SupportForce> support{};  ///< while it slides under state-dependent forces
-    Instant booked{};                         ///< how far the ledger has followed it
+    std::vector<BodyState> launched{};        ///< where the segment began: for replays
+    std::vector<ReplayedStep> replayed{};
+    double roundoff = 0.0;  ///< of the segment so far, J
+    Instant booked{};       ///< how far the ledger has followed it
   };
 
   // Motions
@@ -66,7 +69,7 @@ class EventWorld {
   void set_motion(BodyIndex i, const Motion& motion);
   void hold(Flow& flow, Instant t);  ///< keeps a supported ball on its surface
   [[nodiscard]] BodyState state_at(BodyIndex i, Instant t) const;
-  [[nodiscard]] Vector3 field_force(BodyIndex i) const;
+  [[nodiscard]] Vector3 fields_at(BodyIndex i) const;
   [[nodiscard]] Vector3 net_force(BodyIndex i) const;
 
   // Predictions
@@ -96,6 +99,7 @@ class EventWorld {
 
   // Ledger
   void book(Flow& flow, Instant t);
+  [[nodiscard]] double new_roundoff(Flow& flow, Instant t);
 
   [[nodiscard]] Flow& flow_of(BodyIndex i) { return flows_[model_.island_of(i)]; }
   [[nodiscard]] std::string names(BodyIndex a, BodyIndex b) const;

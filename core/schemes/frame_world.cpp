@@ -127,7 +127,7 @@ void FrameWorld::advance(double h) {
       if (dense) {
         mover.stepper->dense_output(mover.motions);
       }
-      book_step(mover, now_ + done, advanced);
+      book_step(mover, now_ + done, advanced, true);
       scatter(mover);
     }
   }
@@ -156,18 +156,35 @@ void FrameWorld::settle(BodyIndex i, Instant t, double interval) {
 }
 
 /// Books one stepper step: `bodies_` is where it began, `mover.states` where it ended.
-void FrameWorld::book_step(Mover& mover, Instant t, double h) {
+void FrameWorld::book_step(Mover& mover, Instant t, double h, bool replayable) {
   if (wants_motions_) {
     for (std::size_t k = 0; k < mover.motions.size(); ++k) {
       recorder_.motion(mover.island.bodies[k], mover.motions[k]);
     }
   }
-  const Leg leg{mover.island, bodies_, mover.states, given_force_, mover.exact};
+  const double roundoff = options_.roundoff && replayable ? replay(mover, h) : 0.0;
+  const Leg leg{mover.island, bodies_, mover.states, given_force_, mover.exact, roundoff};
   if (mover.island.forces.empty()) {
     account_.leg(leg);
   } else {
     account_.leg(leg, mover.motions, t, h);
   }
+}
+
+/// Roundoff of the stepper's last step, which began at `bodies_`, J; 0 where it cannot be replayed.
+double FrameWorld::replay(Mover& mover, double h) {
+  const std::vector<BodyState> after = mover.states;
+  gather(mover);
+  mover.replayed.resize(after.size());
+  double sum = 0.0;
+  if (mover.stepper->replay(mover.island, h, mover.states, mover.replayed)) {
+    for (std::size_t k = 0; k < after.size(); ++k) {
+      sum += roundoff_energy(mover.island.inertia[k].mass, mover.island.constant_force[k], after[k],
+                             mover.replayed[k]);
+    }
+  }
+  mover.states = after;
+  return sum;
 }
 
 void FrameWorld::check_finite() {

@@ -74,7 +74,8 @@ class FrameWorld {
     std::vector<Motion> motions{};    ///< dense output of the last step
     double last_step = 0.0;           ///< s
     std::vector<BodyState> booked{};  ///< where the ledger is
-    double booked_until = 0.0;        ///< of the proposal, s
+    std::vector<ReplayedStep> replayed{};
+    double booked_until = 0.0;  ///< of the proposal, s
   };
   /// Something falls into a field or not: seen in the latest detection.
   struct FieldContact {
@@ -87,7 +88,8 @@ class FrameWorld {
   void begin_step(Mover& mover, Instant t);
   bool step(Mover& mover, Instant t, double h, double& advanced);
   void fly(Mover& mover, double from, double to);
-  void book_step(Mover& mover, Instant t, double h);
+  void book_step(Mover& mover, Instant t, double h, bool replayable);
+  [[nodiscard]] double replay(Mover& mover, double h);
   void book_path(Mover& mover, double until);
   void settle(BodyIndex i, Instant t, double interval);
   void end_step(double h);
@@ -100,12 +102,10 @@ class FrameWorld {
   void collide(BodyIndex a, BodyIndex b, BodyState& state_a, BodyState& state_b, Instant t);
   [[nodiscard]] Contact contact(BodyIndex a, BodyIndex b, const BodyState& state_a,
                                 const BodyState& state_b);
-  void exchange_forces(BodyIndex a, BodyIndex b, const BodyState& state_a,
-                       const BodyState& state_b);
   void book_impact(const ImpactEnergy& energy, BodyIndex a, BodyIndex b);
   [[nodiscard]] Motion last_motion(BodyIndex i) const;
   [[nodiscard]] double loss_at_contact(BodyIndex a, BodyIndex b, double loss_when_handled);
-  void record_field(BodyIndex a, BodyIndex b);
+  void meet_field(BodyIndex a, BodyIndex b);
   void record_fields_left();
   void check_finite();
 

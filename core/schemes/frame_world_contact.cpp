@@ -17,9 +17,7 @@ Contact FrameWorld::contact(BodyIndex a, BodyIndex b, const BodyState& state_a,
 void FrameWorld::collide(BodyIndex a, BodyIndex b, BodyState& state_a, BodyState& state_b,
                          Instant t) {
   if (model_.is_field(a) || model_.is_field(b)) {
-    exchange_forces(a, b, state_a, state_b);
-    record_field(a, b);
-    return;
+    return meet_field(a, b);
   }
   Event event{.time = t, .kind = EventKind::impact, .a = a, .b = b};
   if (law_needs_contact_) {
@@ -47,15 +45,6 @@ void FrameWorld::collide(BodyIndex a, BodyIndex b, BodyState& state_a, BodyState
   ++cost_.impacts;
   ++cost_.events;
   recorder_.event(event);
-}
-
-void FrameWorld::exchange_forces(BodyIndex a, BodyIndex b, const BodyState& state_a,
-                                 const BodyState& state_b) {
-  const Vector3 from_a = model_.entity(a).get_force(model_.body(a), state_a);
-  const Vector3 from_b = model_.entity(b).get_force(model_.body(b), state_b);
-  model_.entity(a).give_force(given_force_[a], from_b);
-  model_.entity(b).give_force(given_force_[b], from_a);
-  any_given_ = true;
 }
 
 void FrameWorld::book_impact(const ImpactEnergy& energy, BodyIndex a, BodyIndex b) {
@@ -128,8 +117,14 @@ double FrameWorld::loss_at_contact(BodyIndex a, BodyIndex b, double loss_when_ha
       .restitution_loss;
 }
 
-void FrameWorld::record_field(BodyIndex a, BodyIndex b) {
+/// 5.8: a field pushes what overlaps it; nothing bounces.
+void FrameWorld::meet_field(BodyIndex a, BodyIndex b) {
   const auto [field, body] = model_.is_field(a) ? std::pair{a, b} : std::pair{b, a};
+  if (!model_.is_free(body)) {
+    return;
+  }
+  given_force_[body] += field_force(model_, field, bodies_[field], body);
+  any_given_ = true;
   for (FieldContact& inside : in_field_) {
     if (inside.field == field && inside.body == body) {
       inside.seen = true;

@@ -101,6 +101,9 @@ void FrameWorld::book_path(Mover& mover, double until) {
       end = until;  // what rounding left between the last motion and `until`
     }
     const bool at_end = end >= proposed_;
+    // Only the stepper's last step can be replayed, and only from where it began.
+    const bool replayable = path_motion(first, from).start == paths_[first].back().start &&
+                            paths_[first].back().start == now_ + from;
     for (std::size_t k = 0; k < to.size(); ++k) {
       const BodyIndex i = mover.island.bodies[k];
       mover.motions[k] = path_motion(i, from);
@@ -110,7 +113,7 @@ void FrameWorld::book_path(Mover& mover, double until) {
       bodies_[i] = mover.booked[k];
     }
     std::swap(to, mover.states);
-    book_step(mover, now_ + from, end - from);
+    book_step(mover, now_ + from, end - from, replayable);
     std::swap(to, mover.states);
     mover.booked = to;
     mover.booked_until = end;
