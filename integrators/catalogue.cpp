@@ -1,8 +1,11 @@
 #include "integrators/catalogue.hpp"
 
 #include "integrators/closed_form.hpp"
+#include "integrators/dormand_prince.hpp"
 #include "integrators/euler.hpp"
+#include "integrators/lie_group.hpp"
 #include "integrators/runge_kutta_4.hpp"
+#include "integrators/splitting.hpp"
 #include "integrators/velocity_verlet.hpp"
 
 namespace kairos::integrators {
@@ -14,6 +17,11 @@ std::span<const CatalogueEntry> catalogue() {
       {symplectic_euler_info, make_symplectic_euler},
       {velocity_verlet_info, make_velocity_verlet},
       {rk4_info, make_rk4},
+      {dopri5_info, make_dopri5},
+      {forest_ruth_info, make_forest_ruth},
+      {suzuki4_info, make_suzuki4},
+      {rkmk4_info, make_rkmk4},
+      {free_top_splitting_info, make_free_top_splitting},
       {closed_form_info, make_closed_form},
   };
   return entries;

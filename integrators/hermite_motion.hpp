@@ -31,6 +31,8 @@ class HermiteMotion {
     double* rate;
   };
   Node add(double s);
+  /// Takes back all nodes but the first `nodes`.
+  void truncate(std::size_t nodes) { used_ = nodes; }
   /// Data of a node that was added.
   [[nodiscard]] const double* y(std::size_t node) const { return &values_[2 * node * size_]; }
   [[nodiscard]] const double* rate(std::size_t node) const {

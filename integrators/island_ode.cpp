@@ -60,16 +60,27 @@ void IslandOde::rhs(double s, const double* y, double* dy) {
   ++evaluations_;
   unpack(y, states_);
   island_->wrenches(epoch_ + s, states_, wrenches_);
+  rate(*island_, states_, wrenches_, dy);
+  for (const Slot& slot : slots_) {
+    if (slot.rotates) {  // linear in the quaternion as it is, not as normalised for the forces
+      const std::size_t q = slot.offset + quaternion;
+      Map4(dy + q) = quaternion_rate(ConstMap3(y + slot.offset + angular), ConstMap4(y + q));
+    }
+  }
+}
+
+void IslandOde::rate(const Island& island, std::span<const BodyState> states,
+                     std::span<const Wrench> wrenches, double* dy) const {
   for (std::size_t i = 0; i < slots_.size(); ++i) {
-    const double* const body = y + slots_[i].offset;
-    double* const rate = dy + slots_[i].offset;
-    const BodyInertia& inertia = island_->inertia[i];
-    Map3(rate + position) = ConstMap3(body + velocity);
-    Map3(rate + velocity) = wrenches_[i].force / inertia.mass;
+    double* const body = dy + slots_[i].offset;
+    const BodyInertia& inertia = island.inertia[i];
+    const BodyState& state = states[i];
+    Map3(body + position) = state.twist.linear;
+    Map3(body + velocity) = wrenches[i].force / inertia.mass;
     if (slots_[i].rotates) {
-      Map4(rate + quaternion) =
-          quaternion_rate(states_[i].twist.angular, ConstMap4(body + quaternion));
-      Map3(rate + angular) = angular_acceleration(inertia, states_[i], wrenches_[i].torque);
+      Map4(body + quaternion) =
+          quaternion_rate(state.twist.angular, as_vector(state.pose.orientation));
+      Map3(body + angular) = angular_acceleration(inertia, state, wrenches[i].torque);
     }
   }
 }

@@ -42,6 +42,9 @@ class IslandOde {
   /// Normalises the quaternions in y.
   void normalize(double* y) const;
   void rhs(double s, const double* y, double* dy);
+  /// The rate at states whose wrenches are known.
+  void rate(const Island& island, std::span<const BodyState> states,
+            std::span<const Wrench> wrenches, double* dy) const;
 
  private:
   const Island* island_ = nullptr;

@@ -34,6 +34,9 @@ class OdeStepper : public Stepper {
   /// Ends the step at the last node: keeps its rate, writes the states.
   void end_step(std::span<BodyState> states);
 
+  /// Of the last step.
+  [[nodiscard]] bool constant_acceleration() const { return constant_acceleration_; }
+
   IslandOde ode_;
   HermiteMotion dense_;
 
