@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -40,6 +41,9 @@ void add_commands(CLI::App& app) {
   add_explain_command(app);
   add_list_command(app);
   add_toi_command(app);
+  add_sweep_command(app);
+  add_experiment_command(app);
+  add_reproduce_command(app);
 }
 
 int parse_and_run(int argc, const char* const* argv) {
@@ -59,6 +63,8 @@ int parse_and_run(int argc, const char* const* argv) {
 }  // namespace
 
 int run_command_line(int argc, const char* const* argv) {
+  // A file that grows beyond its limit is an error of a write, to be told; not a sudden death.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     return parse_and_run(argc, argv);
   } catch (const InputError& error) {

@@ -22,8 +22,12 @@ run(${CMAKE_COMMAND} --build ${build})
 
 # The ball falls 4.9 m: t = sqrt(2 * 4.9 / 9.8) = 1.
 run(${build}/ten_lines)
-if(NOT output MATCHES "first impact at 1 s")
+if(NOT output MATCHES "^impact in .1, 1. s")
   message(FATAL_ERROR "ten_lines says: ${output}")
+endif()
+run(${build}/run_scene)
+if(NOT output MATCHES "s: impact")
+  message(FATAL_ERROR "run_scene says: ${output}")
 endif()
 # The installed program finds the installed scenes.
 run(${prefix}/bin/kairos explain bounce)

@@ -1,0 +1,203 @@
+// The command line as a person meets it: help everywhere, exit codes, and messages that name what
+// is wrong and what is allowed.
+
+#include "tests/catch.hpp"
+#include "tests/experiments/program.hpp"
+#include "tests/experiments/scenes.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+using namespace kairos::tests;
+
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+const std::vector<std::string> commands{"run", "explain", "list", "toi"};
+
+}  // namespace
+
+TEST_CASE("--help works everywhere and goes to stdout", "[cli]") {
+  const Outcome top = kairos_program({"--help"});
+  CHECK(top.exit_code == 0);
+  CHECK(top.err.empty());
+  for (const std::string& command : commands) {
+    CAPTURE(command);
+    CHECK(contains(top.out, command));
+    const Outcome help = kairos_program({command, "--help"});
+    CHECK(help.exit_code == 0);
+    CHECK(contains(help.out, "Usage:"));
+    CHECK(help.err.empty());
+  }
+}
+
+TEST_CASE("--version names the version", "[cli]") {
+  const Outcome outcome = kairos_program({"--version"});
+  CHECK(outcome.exit_code == 0);
+  CHECK(contains(outcome.out, "kairos 0."));
+}
+
+TEST_CASE("list names what there is to choose from", "[cli]") {
+  const Outcome all = kairos_program({"list"});
+  REQUIRE(all.exit_code == 0);
+  for (const char* name :
+       {"original", "geometric", "substepped", "bisected", "event-driven", "thesis-euler", "auto",
+        "closed-form", "rk4", "sat", "bisection", "conservative-advancement", "certified", "newton",
+        "all-pairs", "conveyor", "bounce"}) {
+    CAPTURE(name);
+    CHECK(contains(all.out, name));
+  }
+  const Outcome one = kairos_program({"list", "detectors"});
+  CHECK(contains(one.out, "certified"));
+  CHECK_FALSE(contains(one.out, "thesis-euler"));
+}
+
+TEST_CASE("run prints a summary and exits with 0", "[cli]") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.file("drop.toml", drop_scene);
+  const Outcome outcome = kairos_program({"run", scene});
+  CAPTURE(outcome.out, outcome.err);
+  CHECK(outcome.exit_code == 0);
+  CHECK(outcome.err.empty());
+  CHECK(contains(outcome.out, "event-driven + auto (closed-form) + certified + newton"));
+  CHECK(contains(outcome.out, "t = 2.5 s"));
+}
+
+TEST_CASE("--thesis is the thesis' own method, and single choices win over it", "[cli]") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.file("drop.toml", drop_scene);
+  const Outcome thesis = kairos_program({"run", scene, "--thesis"});
+  CHECK(contains(thesis.out, "original + thesis-euler (thesis-euler) + sat + thesis"));
+  const Outcome mixed = kairos_program({"run", scene, "--thesis", "--impact", "newton"});
+  CHECK(contains(mixed.out, "original + thesis-euler (thesis-euler) + sat + newton"));
+}
+
+TEST_CASE("--set replaces a value of the scene", "[cli]") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.file("drop.toml", drop_scene);
+  const Outcome none = kairos_program({"run", scene, "--set", "body.ball.position=[0, 500, 0]"});
+  CAPTURE(none.out, none.err);
+  CHECK(none.exit_code == 0);
+  CHECK(contains(none.out, "impacts               0"));
+}
+
+TEST_CASE("--frame takes a fraction, a unit, or a CSV of frame times", "[cli]") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.file("drop.toml", drop_scene);
+  const std::string times = folder.file("frames.csv", "duration\n0.5\n0.25\n");
+  for (const std::string frame : {"1/60", "16ms", "0.01", times.c_str()}) {
+    CAPTURE(frame);
+    CHECK(kairos_program({"run", scene, "--frame", frame}).exit_code == 0);
+  }
+}
+
+TEST_CASE("explain says what the model leaves out", "[cli]") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.file("drop.toml", drop_scene);
+  const Outcome outcome = kairos_program({"explain", scene});
+  CHECK(outcome.exit_code == 0);
+  CHECK(contains(outcome.out, "because"));
+}
+
+TEST_CASE("wrong command lines exit with 2 and say what is wrong", "[cli]") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.file("drop.toml", drop_scene);
+  const std::string empty = folder.file("empty.csv", "");
+  const std::string bad_times = folder.file("bad.csv", "duration\n0.1\n-1\n");
+  const std::string stump = folder.file("stump.toml", drop_scene.substr(0, 150));
+  const std::string inside =
+      folder.file("inside.toml", std::string(drop_scene) +
+                                     "[[body]]\nname = \"other\"\n"
+                                     "entity = \"ball\"\nradius = 0.1\nmass = 1.0\n"
+                                     "position = [0.05, 5.0, 0.0]\n");
+  struct Case {
+    std::vector<std::string> arguments;
+    std::string says;
+  };
+  const std::vector<Case> cases{
+      {{}, "subcommand"},
+      {{"fly"}, "fly"},
+      {{"--fly"}, "--fly"},
+      {{"run"}, "scene"},
+      {{"run", "nowhere.toml"}, "nowhere.toml"},
+      {{"run", "bounse"}, "bounce"},
+      {{"run", folder.path("")}, folder.path("")},
+      {{"run", stump}, "stump.toml:"},
+      {{"run", inside}, "inside body.ball (line 11)"},
+      {{"run", scene, "--scheme", "orginal"}, "original"},
+      {{"run", scene, "--integrator", "rk5"}, "rk4"},
+      {{"run", scene, "--detector", "certain"}, "certified"},
+      {{"run", scene, "--impact", "newtonian"}, "newton"},
+      {{"run", scene, "--scheme", "event-driven", "--detector", "sat"}, "sat"},
+      {{"run", scene, "--frame", "0"}, "--frame"},
+      {{"run", scene, "--frame", "-1/60"}, "--frame"},
+      {{"run", scene, "--frame", "1/0"}, "--frame"},
+      {{"run", scene, "--frame", "nan"}, "--frame"},
+      {{"run", scene, "--frame", "16parsecs"}, "--frame"},
+      {{"run", scene, "--frame", folder.path("none.csv")}, "none.csv"},
+      {{"run", scene, "--frame", empty}, "empty.csv"},
+      {{"run", scene, "--frame", bad_times}, "bad.csv:3"},
+      {{"run", scene, "--frame", "1e-15", "--duration", "1000"}, "frames"},
+      {{"run", scene, "--duration", "-1"}, "--duration"},
+      {{"run", scene, "--duration", "inf"}, "--duration"},
+      {{"run", scene, "--duration", ""}, "--duration"},
+      {{"run", scene, "--step", "0"}, "--step"},
+      {{"run", scene, "--threshold", "-0.1"}, "threshold"},
+      {{"run", scene, "--threshold", "wide"}, "--threshold"},
+      {{"run", scene, "--tolerance", "-1e-9"}, "tolerance"},
+      {{"run", scene, "--tolerance", "nan"}, "--tolerance"},
+      {{"run", scene, "--max-substeps", "0"}, "max substeps"},
+      {{"run", scene, "--max-substeps", "1.5"}, "--max-substeps"},
+      {{"run", scene, "--relative-tolerance", "-1"}, "relative tolerance"},
+      {{"run", scene, "--absolute-tolerance", "x"}, "--absolute-tolerance"},
+      {{"run", scene, "--set", "radius"}, "--set"},
+      {{"run", scene, "--set", "=1"}, "--set"},
+      {{"run", scene, "--set", "body.ball.radius=-1"}, "radius"},
+      {{"run", scene, "--set", "body.bal.radius=1"}, "ball"},
+      {{"run", scene, "--set", "body.ball.mass=nan"}, "mass"},
+      {{"run", scene, "--out", ""}, "--out"},
+      {{"run", scene, scene}, "drop.toml"},
+      {{"explain"}, "scene"},
+      {{"explain", "nowhere"}, "nowhere"},
+      {{"list", "planets"}, "planets"},
+      {{"toi"}, "queries"},
+      {{"toi", "nowhere.csv"}, "nowhere.csv"},
+      {{"toi", empty, "--detector", "sat"}, "sat"},
+      {{"toi", empty, "--tolerance", "-1"}, "--tolerance"},
+      {{"toi", empty, "--threads", "-3"}, "--threads"},
+  };
+  for (const Case& wrong : cases) {
+    const Outcome outcome = kairos_program(wrong.arguments);
+    INFO("kairos " << fmt::format("{}", fmt::join(wrong.arguments, " ")));
+    CAPTURE(outcome.out, outcome.err);
+    CHECK(outcome.exit_code == 2);
+    CHECK(outcome.out.empty());
+    CHECK(contains(outcome.err, wrong.says));
+  }
+}
+
+TEST_CASE("a message names file, line and key", "[cli]") {
+  const TemporaryFolder folder;
+  const std::string scene =
+      folder.file("drop.toml", std::string(drop_scene) + "restitution = 2.0\n");
+  const Outcome outcome = kairos_program({"run", scene});
+  CHECK(outcome.exit_code == 2);
+  CHECK(contains(outcome.err, scene + ":17: body.ball.restitution: "));
+}
+
+TEST_CASE("stdout that takes nothing is a failed run", "[cli][fault]") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.file("drop.toml", drop_scene);
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"run", scene}, {"list"}, {"explain", scene}, {"--help"}}) {
+    CAPTURE(arguments.front());
+    const Outcome outcome = kairos_program(arguments, {.output = "/dev/full"});
+    CHECK(outcome.exit_code == 1);
+    CHECK(contains(outcome.err, "No space left"));
+  }
+}

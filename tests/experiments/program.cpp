@@ -1,0 +1,100 @@
+#include "tests/experiments/program.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <system_error>
+
+namespace kairos::tests {
+namespace {
+
+void connect(int stream, const std::string& path, int flags) {
+  const int descriptor = ::open(path.c_str(), flags, 0600);
+  if (descriptor < 0 || ::dup2(descriptor, stream) < 0) {
+    ::_exit(126);
+  }
+  ::close(descriptor);
+}
+
+[[noreturn]] void become(const std::vector<std::string>& arguments,
+                         const Surroundings& surroundings, const std::string& in,
+                         const std::string& out, const std::string& err) {
+  connect(STDIN_FILENO, in, O_RDONLY);
+  connect(STDOUT_FILENO, out, O_WRONLY | O_CREAT | O_TRUNC);
+  connect(STDERR_FILENO, err, O_WRONLY | O_CREAT | O_TRUNC);
+  if (surroundings.largest_file > 0) {
+    const ::rlimit limit{surroundings.largest_file, surroundings.largest_file};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  std::vector<char*> argv{const_cast<char*>(KAIROS_PROGRAM)};
+  for (const std::string& argument : arguments) {
+    argv.push_back(const_cast<char*>(argument.c_str()));
+  }
+  argv.push_back(nullptr);
+  ::execv(KAIROS_PROGRAM, argv.data());
+  ::_exit(127);
+}
+
+}  // namespace
+
+Outcome kairos_program(const std::vector<std::string>& arguments,
+                       const Surroundings& surroundings) {
+  const TemporaryFolder folder;
+  const std::string in = folder.file("in", surroundings.input);
+  const std::string out = surroundings.output.empty() ? folder.path("out") : surroundings.output;
+  const std::string err = folder.path("err");
+  const ::pid_t child = ::fork();
+  if (child == 0) {
+    become(arguments, surroundings, in, out, err);
+  }
+  int status = 0;
+  if (child < 0 || ::waitpid(child, &status, 0) != child) {
+    throw std::system_error(errno, std::generic_category(), "running kairos");
+  }
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status),
+          surroundings.output.empty() ? read_all(out) : "", read_all(err)};
+}
+
+TemporaryFolder::TemporaryFolder() {
+  std::string name = (std::filesystem::temp_directory_path() / "kairos-test-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr) {
+    throw std::system_error(errno, std::generic_category(), name);
+  }
+  folder_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(folder_, ignored);
+}
+
+std::string TemporaryFolder::file(std::string_view name, std::string_view text) const {
+  std::ofstream(folder_ / name, std::ios::binary) << text;
+  return path(name);
+}
+
+std::vector<std::string> TemporaryFolder::entries(std::string_view below) const {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_ / below)) {
+    names.push_back(entry.path().lexically_relative(folder_ / below).string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string read_all(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+}  // namespace kairos::tests
