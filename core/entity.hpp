@@ -66,7 +66,8 @@ class Entity {
 
   /// 6.3 GetMomentum.
   [[nodiscard]] virtual Momentum get_momentum(const Body& self, const BodyState& state) const = 0;
-  /// 6.5 GetPhysForce: the force it applies to what touches it, N.
+  /// 6.5 GetPhysForce: the force it applies to what touches it, in the unit of G: N where gravity
+  /// is the thesis' force, N per kg of the receiver where it is an acceleration.
   [[nodiscard]] virtual Vector3 get_force(const Body& self, const BodyState& state) const;
   /// 6.4 GiveMomentum: changes its own velocity (and position, 7.4).
   virtual void give_momentum(const Body& self, BodyState& state, const Gift& gift) const;

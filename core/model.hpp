@@ -30,8 +30,9 @@ struct Decision {
 /// collide; which motions are closed-form; which pairs can ever meet. It can say why.
 class Model {
  public:
-  /// Throws `InputError` where the scene cannot work: solids that overlap at the start, one of
-  /// them movable; a free body with no mass.
+  /// Throws `InputError` where the scene cannot work: a free body with no mass, a bat that nothing
+  /// drives, a number that is not finite. Solids that overlap at the start are for those to refuse
+  /// who have a detector.
   explicit Model(Scene scene, const ModelOptions& options = {});
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
@@ -49,7 +50,8 @@ class Model {
   /// Gravity on body i, N (0 for bodies that are not free).
   [[nodiscard]] const Vector3& gravity_force(BodyIndex i) const { return gravity_force_[i]; }
 
-  /// Pairs that can ever interact, in the order of creation.
+  /// Pairs to test, in the order of creation: those that can ever interact; with `prune_pairs` off
+  /// all pairs, of which still only those do anything to each other that `interacts`.
   [[nodiscard]] const std::vector<BodyPair>& pairs() const { return pairs_; }
   [[nodiscard]] bool interacts(BodyIndex a, BodyIndex b) const {
     return interacts_[a * size() + b];
@@ -58,10 +60,16 @@ class Model {
   [[nodiscard]] const std::vector<Island>& islands() const { return islands_; }
   /// Island of a free body.
   [[nodiscard]] std::size_t island_of(BodyIndex i) const { return island_of_[i]; }
-  /// True if `auto` takes the closed form for this island.
+  /// True if `auto` takes the closed form for this island: a parabola, and a rotation that is left
+  /// out or of constant rate.
   [[nodiscard]] bool closed_form(std::size_t island) const { return closed_form_[island]; }
   /// Name of the broad phase that the scene needs.
   [[nodiscard]] std::string_view broad_phase() const { return broad_phase_; }
+
+  /// The force on a free body of being in touch with a giver (a field), N: 6.5, times the body's
+  /// mass where gravity is an acceleration.
+  [[nodiscard]] Vector3 given_force(BodyIndex giver, const BodyState& state,
+                                    BodyIndex receiver) const;
 
   /// Bodies at t = 0; driven bodies where their drive puts them.
   [[nodiscard]] State initial_state() const;
@@ -74,6 +82,15 @@ class Model {
   [[nodiscard]] const std::vector<Decision>& decisions() const { return decisions_; }
 
  private:
+  void choose_bodies();
+  void choose_rotation();
+  void choose_pairs();
+  void choose_islands();
+  void choose_motion();
+  [[nodiscard]] bool keeps_constant_rate(BodyIndex i) const;
+  [[nodiscard]] bool can_interact(BodyIndex a, BodyIndex b) const;
+  void decide(std::string topic, std::string text, std::string reason);
+
   Scene scene_;
   ModelOptions options_;
   std::vector<Shape> shapes_;
@@ -84,6 +101,7 @@ class Model {
   std::vector<BodyPair> pairs_;
   std::vector<bool> interacts_;
   std::vector<Island> islands_;
+  std::vector<std::shared_ptr<const Force>> island_forces_;  ///< owns what islands refer to
   std::vector<std::size_t> island_of_;
   std::vector<bool> closed_form_;
   std::string_view broad_phase_ = "all-pairs";

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "core/scene.hpp"
+#include "core/table_reader.hpp"
+
+#include <string>
+
+namespace kairos {
+inline namespace core {
+
+/// What the top level of a scene file says for all of its bodies.
+struct BodyDefaults {
+  double G = 9.8;
+  Bounds bounds = Bounds::shape;
+  std::string directory;  ///< of the scene file: tracks are relative to it
+};
+
+inline constexpr std::string_view bounds_names[] = {"shape", "obb"};
+
+/// Reads one `[[body]]`. Throws `InputError`.
+[[nodiscard]] Body read_body(const Item& item, const BodyDefaults& defaults);
+/// Path of a body in messages and overrides: `body.ball`, or `body[2]` where it has no name.
+[[nodiscard]] std::string body_path(const Value& body, std::size_t index);
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "core/drive.hpp"
+
+#include <string>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+
+/// A recorded pose at a time.
+struct TrackSample {
+  double time = 0.0;  ///< s
+  Pose pose;
+};
+
+/// A body that follows a recording. Between two samples it moves on a straight line and turns at a
+/// constant rate the shorter way (slerp), so that its velocity jumps at samples; `smooth` takes a
+/// cubic Hermite curve for the position, with the derivative of the parabola through each three
+/// neighbouring samples, so that velocity is continuous (the rotation stays a slerp). Before the
+/// first and after the last sample it holds still. Samples are the knots.
+class Track : public Drive {
+ public:
+  struct Options {
+    bool smooth = false;
+    double reach = 0.0;       ///< m; no point of the body is farther from its origin
+    std::string description;  ///< where it comes from
+  };
+
+  /// At least one sample, times strictly increasing (asserted: the reader has refused others).
+  Track(std::vector<TrackSample> samples, Options options);
+
+  [[nodiscard]] Motion motion(Instant t, double at_most) const override;
+  [[nodiscard]] std::string description() const override { return options_.description; }
+  [[nodiscard]] const std::vector<TrackSample>& samples() const { return samples_; }
+  /// Whether the orientation ever changes.
+  [[nodiscard]] bool turns() const;
+
+ private:
+  /// The curve between samples i and i + 1 from that sample on, made once.
+  [[nodiscard]] Motion segment(std::size_t i) const;
+
+  std::vector<TrackSample> samples_;
+  Options options_;
+  std::vector<Motion> segments_;
+};
+
+/// Reads the samples of a recording (columns t, x, y, z, qw, qx, qy, qz; SI units; the quaternion
+/// columns may be left out together). Throws `InputError`.
+[[nodiscard]] std::vector<TrackSample> read_track_csv(const std::string& path);
+
+}  // namespace core
+}  // namespace kairos

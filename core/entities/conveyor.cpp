@@ -1,0 +1,48 @@
+#include "core/entity.hpp"
+#include "core/scene.hpp"
+
+namespace kairos {
+inline namespace core {
+namespace entities {
+namespace {
+
+/// 5.7, 6.3.3, 13.6: reflects as a wall does and gives a push along its length, the body's +x
+/// axis. The thesis gives mass 10 and a speed of 1. For balls lighter than the belt the exchange
+/// formula has already turned the normal velocity outwards and the reflection turns it back in.
+class Conveyor : public Entity {
+ public:
+  Conveyor(double belt_mass, double belt_speed) : belt_mass_(belt_mass), belt_speed_(belt_speed) {}
+
+  [[nodiscard]] std::string_view kind() const override { return "conveyor"; }
+  [[nodiscard]] PhysicsType physics_type() const override { return PhysicsType::conveyor; }
+  [[nodiscard]] Mobility mobility() const override { return Mobility::fixed; }
+  [[nodiscard]] bool stationary() const override { return true; }
+  [[nodiscard]] Momentum get_momentum(const Body& /*self*/, const BodyState& state) const override {
+    return {belt_mass_, state.pose.orientation * Vector3(belt_speed_, 0.0, 0.0)};
+  }
+  [[nodiscard]] Momentum belt(const Body& self, const BodyState& state) const override {
+    return get_momentum(self, state);
+  }
+
+ private:
+  double belt_mass_;   // kg
+  double belt_speed_;  // m/s
+};
+
+}  // namespace
+
+EntityType conveyor() {
+  return {.kind = "conveyor",
+          .summary = "a surface whose belt pushes what hits it along the body's +x axis",
+          .source = "5.7, 6.3.3, 13.6",
+          .mobility = Mobility::fixed,
+          .keys = {{"belt_mass", "kg", 10.0, 1e-30, 1e30, "mass that the belt exchanges with"},
+                   {"belt_speed", "m/s", 1.0, -1e12, 1e12, "speed of the belt along +x"}},
+          .make = [](std::span<const double> values) {
+            return std::make_shared<const Conveyor>(values[0], values[1]);
+          }};
+}
+
+}  // namespace entities
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,116 @@
+#include "core/frame_times.hpp"
+
+#include "core/csv.hpp"
+#include "core/document.hpp"
+#include "core/error.hpp"
+#include "core/random.hpp"
+
+#include <fmt/format.h>
+
+#include <numeric>
+#include <utility>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+/// Streams of the random numbers of jittered frames.
+constexpr std::uint64_t jitter_stream = 0;
+constexpr std::uint64_t spike_stream = 1;
+
+double duration_of(const FixedFrames& frames, std::int64_t) { return frames.duration; }
+
+double duration_of(const ListedFrames& frames, std::int64_t n) {
+  const auto count = static_cast<std::int64_t>(frames.durations.size());
+  return frames.durations[static_cast<std::size_t>(n % count)];
+}
+
+double duration_of(const JitteredFrames& frames, std::int64_t n) {
+  const auto index = static_cast<std::uint64_t>(n);
+  const double u = Random(frames.seed, jitter_stream, index).uniform(-1.0, 1.0);
+  const bool spike = Random(frames.seed, spike_stream, index).uniform() < frames.spike_probability;
+  return frames.mean * (1.0 + frames.jitter * u) * (spike ? frames.spike_factor : 1.0);
+}
+
+double mean_of(const FixedFrames& frames) { return frames.duration; }
+
+double mean_of(const ListedFrames& frames) {
+  return std::accumulate(frames.durations.begin(), frames.durations.end(), 0.0) /
+         static_cast<double>(frames.durations.size());
+}
+
+double mean_of(const JitteredFrames& frames) {
+  return frames.mean * (1.0 + frames.spike_probability * (frames.spike_factor - 1.0));
+}
+
+/// Takes a unit off the end of the text and returns what it is in seconds.
+double take_unit(std::string_view& text) {
+  constexpr std::pair<std::string_view, double> units[] = {
+      {"ms", 1e3}, {"us", 1e6}, {"ns", 1e9}, {"s", 1.0}};
+  for (const auto& [unit, per_second] : units) {
+    if (text.ends_with(unit)) {
+      text = trimmed(text.substr(0, text.size() - unit.size()));
+      return per_second;
+    }
+  }
+  return 1.0;
+}
+
+}  // namespace
+
+double frame_duration(const FrameTimes& times, std::int64_t n) {
+  return std::visit([n](const auto& frames) { return duration_of(frames, n); }, times);
+}
+
+double mean_frame_duration(const FrameTimes& times) {
+  return std::visit([](const auto& frames) { return mean_of(frames); }, times);
+}
+
+double parse_duration(std::string_view text, const TextOrigin& origin) {
+  std::string_view rest = trimmed(text);
+  const double per_second = take_unit(rest);
+  const std::size_t slash = rest.find('/');
+  const std::optional<double> numerator = parse_number(trimmed(rest.substr(0, slash)));
+  const std::optional<double> denominator =
+      slash == std::string_view::npos ? 1.0 : parse_number(trimmed(rest.substr(slash + 1)));
+  // Dividing, because 16 / 1e3 is the double nearest to 0.016, which 16 * 1e-3 need not be.
+  const double seconds = numerator && denominator ? *numerator / *denominator / per_second : 0.0;
+  if (!(seconds > 0.0 && seconds <= longest_duration) || !denominator || *denominator < 0.0) {
+    throw InputError(origin.file, origin.line, origin.key,
+                     fmt::format("\"{}\" is no duration; allowed: seconds > 0 and <= {}, such as "
+                                 "0.02, \"1/60\", \"16ms\", \"250us\"",
+                                 text, longest_duration));
+  }
+  return seconds;
+}
+
+FrameTimes read_frame_csv(const std::string& path) {
+  std::string text = read_text_file(path);
+  // A list without a header is a table with one column.
+  const std::size_t start = text.find_first_not_of(" \t\r\n");
+  const bool bare = start != std::string::npos &&
+                    std::string_view("0123456789.+-").find(text[start]) != std::string_view::npos;
+  if (bare) {
+    text.insert(0, "duration\n");
+  }
+  constexpr std::string_view columns[] = {"duration"};
+  const CsvNumbers csv(path, text, columns, bare ? 0 : 1);
+  if (csv.size() == 0) {
+    throw InputError(path, 0, "", "has no frame times; needed: at least one duration");
+  }
+  ListedFrames frames;
+  frames.path = path;
+  for (std::size_t i = 0; i < csv.size(); ++i) {
+    const double duration = csv(i, 0);
+    if (!(duration > 0.0 && duration <= longest_duration)) {
+      throw InputError(
+          path, csv.line(i), "duration",
+          fmt::format("is {}; allowed: a number > 0 and <= {} (s)", duration, longest_duration));
+    }
+    frames.durations.push_back(duration);
+  }
+  return frames;
+}
+
+}  // namespace core
+}  // namespace kairos

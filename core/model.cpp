@@ -1,0 +1,270 @@
+#include "core/model.hpp"
+
+#include "core/error.hpp"
+#include "core/island_force.hpp"
+#include "core/scene_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+constexpr std::size_t no_island = std::numeric_limits<std::size_t>::max();
+
+bool is_sphere(const Shape& shape) { return std::holds_alternative<Sphere>(shape); }
+
+/// Equal moments to roundoff: the same three extents in another order of the sums.
+bool is_spherical(const Vector3& inertia) {
+  constexpr double roundoff = 4.0 * std::numeric_limits<double>::epsilon();
+  return inertia.maxCoeff() - inertia.minCoeff() <= roundoff * inertia.maxCoeff();
+}
+
+/// Groups of bodies that forces couple: the smallest index of each body's group.
+std::vector<BodyIndex> group_of(const Scene& scene) {
+  std::vector<BodyIndex> group(scene.bodies.size());
+  std::iota(group.begin(), group.end(), BodyIndex{0});
+  const auto root = [&group](BodyIndex i) {
+    while (group[i] != i) {
+      i = group[i];
+    }
+    return i;
+  };
+  for (const SceneForce& force : scene.forces) {
+    for (const BodyIndex i : force.bodies) {
+      const BodyIndex a = root(i);
+      const BodyIndex b = root(force.bodies.front());
+      group[std::max(a, b)] = std::min(a, b);
+    }
+  }
+  for (BodyIndex i = 0; i < group.size(); ++i) {
+    group[i] = root(i);
+  }
+  return group;
+}
+
+}  // namespace
+
+Model::Model(Scene scene, const ModelOptions& options)
+    : scene_(std::move(scene)), options_(options) {
+  check_scene(scene_);
+  choose_bodies();
+  choose_rotation();
+  choose_pairs();
+  choose_islands();
+  choose_motion();
+}
+
+void Model::decide(std::string topic, std::string text, std::string reason) {
+  decisions_.push_back({std::move(topic), std::move(text), std::move(reason)});
+}
+
+/// Who moves whom, as what, under which gravity.
+void Model::choose_bodies() {
+  for (BodyIndex i = 0; i < size(); ++i) {
+    const Body& b = body(i);
+    const Mobility kind = b.entity->mobility();
+    mobility_.push_back(b.drive != nullptr ? Mobility::driven : kind);
+    shapes_.push_back(b.collision_shape());
+    const bool accelerates = scene_.gravity == GravityMode::acceleration;
+    const double weight = is_free(i) ? b.G * (accelerates ? b.mass : 1.0) : 0.0;
+    gravity_force_.emplace_back(is_free(i) ? Vector3(weight * b.entity->gravity_direction())
+                                           : Vector3(Vector3::Zero()));
+    if (mobility_[i] == Mobility::fixed) {
+      decide("bodies", fmt::format("\"{}\" never moves", b.name),
+             fmt::format("a {} is fixed, and nothing drives it", b.entity->kind()));
+    } else if (mobility_[i] == Mobility::driven) {
+      decide("bodies", fmt::format("\"{}\" follows its drive and feels no force", b.name),
+             b.drive->description());
+    } else if (weight == 0.0) {
+      decide("bodies", fmt::format("\"{}\" feels no gravity", b.name), "its G is 0");
+    }
+    if (b.bounds == Bounds::obb && is_sphere(b.shape)) {
+      decide("bodies", fmt::format("\"{}\" collides as a box", b.name),
+             "the scene says bounds = \"obb\", as the thesis does");
+    }
+  }
+}
+
+/// Whose orientation is integrated at all.
+void Model::choose_rotation() {
+  for (BodyIndex i = 0; i < size(); ++i) {
+    const Body& b = body(i);
+    const bool could = is_free(i) && (b.entity->rotates() || is_sphere(shape(i)));
+    const bool matters = is_free(i) && b.entity->rotates() && !is_sphere(shape(i));
+    rotates_.push_back(options_.leave_out_orientation ? matters : could);
+    inertia_.push_back(
+        {is_free(i) ? b.mass : -1.0, is_free(i) ? b.inertia : Vector3::Zero().eval(), rotates_[i]});
+    if (is_free(i) && !rotates_[i]) {
+      decide("rotation", fmt::format("the orientation of \"{}\" is left out", b.name),
+             is_sphere(shape(i)) ? "a sphere looks the same from all sides, and without friction "
+                                   "nothing turns it"
+                                 : fmt::format("a {} does not turn", b.entity->kind()));
+    }
+  }
+}
+
+bool Model::can_interact(BodyIndex a, BodyIndex b) const {
+  if (!is_free(a) && !is_free(b)) {
+    return false;
+  }
+  // A field acts on what moves freely; two fields have nothing to say to each other.
+  return !(is_field(a) && is_field(b)) && !(is_field(a) && !is_free(b)) &&
+         !(is_field(b) && !is_free(a));
+}
+
+/// Which pairs can ever meet.
+void Model::choose_pairs() {
+  interacts_.assign(size() * size(), false);
+  std::size_t left_out = 0;
+  for (BodyIndex a = 0; a < size(); ++a) {
+    for (BodyIndex b = a + 1; b < size(); ++b) {
+      const bool meet = can_interact(a, b);
+      interacts_[a * size() + b] = meet;
+      interacts_[b * size() + a] = meet;
+      if (meet || !options_.prune_pairs) {
+        pairs_.emplace_back(a, b);
+      } else {
+        ++left_out;
+      }
+    }
+  }
+  const std::size_t all = size() * (size() - 1) / 2;
+  decide("pairs", fmt::format("{} of {} pairs are tested", pairs_.size(), all),
+         left_out == 0 ? "each can meet"
+                       : fmt::format("{} consist of bodies that no force moves: fixed, driven, or "
+                                     "fields",
+                                     left_out));
+  decide("broad phase", std::string(broad_phase_), "finds which of these pairs are near");
+}
+
+/// What must be integrated together.
+void Model::choose_islands() {
+  island_of_.assign(size(), no_island);
+  const std::vector<BodyIndex> group = group_of(scene_);
+  std::vector<std::size_t> place(size(), 0);
+  for (BodyIndex i = 0; i < size(); ++i) {
+    if (!is_free(i)) {
+      continue;
+    }
+    // The smallest index of a group comes first and opens its island.
+    if (group[i] == i) {
+      island_of_[i] = islands_.size();
+      islands_.emplace_back();
+    }
+    island_of_[i] = island_of_[group[i]];
+    Island& island = islands_[island_of_[i]];
+    place[i] = island.bodies.size();
+    island.bodies.push_back(i);
+    island.inertia.push_back(inertia_[i]);
+    island.constant_force.push_back(gravity_force_[i]);
+  }
+  for (const SceneForce& force : scene_.forces) {
+    if (force.bodies.size() > IslandForce::most_bodies) {
+      throw InputError(scene_.path, 0, "force",
+                       fmt::format("acts on {} bodies; allowed: at most {}", force.bodies.size(),
+                                   IslandForce::most_bodies));
+    }
+    if (force.bodies.empty()) {
+      continue;
+    }
+    Island& island = islands_[island_of_[force.bodies.front()]];
+    std::vector<std::size_t> places;
+    for (const BodyIndex i : force.bodies) {
+      places.push_back(place[i]);
+    }
+    // Most forces act on all of their island, in order: those need no go-between.
+    if (force.bodies == island.bodies) {
+      island_forces_.push_back(force.force);
+    } else {
+      island_forces_.push_back(std::make_shared<const IslandForce>(force.force, places));
+    }
+    island.forces.push_back(island_forces_.back().get());
+  }
+  for (const Island& island : islands_) {
+    if (island.bodies.size() > 1) {
+      decide("islands",
+             fmt::format("{} bodies from \"{}\" on are integrated together", island.bodies.size(),
+                         body(island.bodies.front()).name),
+             "forces couple them");
+    }
+  }
+}
+
+/// Whether the angular velocity stays what it is between impacts, whatever impacts there will be.
+bool Model::keeps_constant_rate(BodyIndex i) const {
+  if (!rotates(i) || is_spherical(inertia_[i].principal)) {
+    return true;
+  }
+  const BodyState& s = body(i).initial;
+  const Vector3 w_B = s.pose.orientation.conjugate() * s.twist.angular;
+  const Vector3 spin = w_B.cross(inertia_[i].principal.cwiseProduct(w_B));
+  const auto solid = [this, i](BodyIndex j) { return interacts(i, j) && !is_field(j); };
+  for (BodyIndex j = 0; j < size(); ++j) {
+    if (solid(j)) {
+      return false;
+    }
+  }
+  return spin.isZero(0.0);
+}
+
+/// Which islands move in closed form.
+void Model::choose_motion() {
+  for (const Island& island : islands_) {
+    const std::string name = body(island.bodies.front()).name;
+    const bool parabola = island.constant_acceleration();
+    const bool constant_rate = std::all_of(island.bodies.begin(), island.bodies.end(),
+                                           [this](BodyIndex i) { return keeps_constant_rate(i); });
+    closed_form_.push_back(options_.closed_form && parabola && constant_rate);
+    if (closed_form_.back()) {
+      decide("motion", fmt::format("\"{}\" moves in closed form", name),
+             "only constant forces act on it, and its rotation is left out or of constant rate");
+    } else {
+      decide("motion", fmt::format("\"{}\" is integrated", name),
+             !options_.closed_form ? "closed forms are switched off"
+             : !parabola           ? "a force on it depends on the state or on time"
+                                   : "it can tumble: its moments of inertia differ, and an impact "
+                                     "can turn its axis");
+    }
+  }
+}
+
+Vector3 Model::given_force(BodyIndex giver, const BodyState& state, BodyIndex receiver) const {
+  const Vector3 force = entity(giver).get_force(body(giver), state);
+  const bool accelerates = scene_.gravity == GravityMode::acceleration;
+  return accelerates ? Vector3(body(receiver).mass * force) : force;
+}
+
+State Model::initial_state() const {
+  State state;
+  state.reserve(size());
+  for (const Body& b : scene_.bodies) {
+    if (b.drive != nullptr) {
+      const Motion motion = b.drive->motion(Instant{}, scene_.duration);
+      state.push_back({motion.pose(0.0), motion.twist(0.0)});
+    } else {
+      state.push_back(b.initial);
+    }
+  }
+  return state;
+}
+
+double Model::kinetic_energy(BodyIndex i, const BodyState& state) const {
+  if (!is_free(i)) {
+    return 0.0;
+  }
+  const BodyInertia& inertia = inertia_[i];
+  const double linear = 0.5 * inertia.mass * state.twist.linear.squaredNorm();
+  if (!inertia.rotates) {
+    return linear;
+  }
+  const Vector3 w_B = state.pose.orientation.conjugate() * state.twist.angular;
+  return linear + 0.5 * w_B.dot(inertia.principal.cwiseProduct(w_B));
+}
+
+}  // namespace core
+}  // namespace kairos
