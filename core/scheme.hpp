@@ -17,6 +17,8 @@ inline namespace core {
 
 /// Makes the stepper of an island: the one that was named, or what the `Model` chooses (`auto`).
 using IslandStepper = std::function<std::unique_ptr<Stepper>(const Model&, std::size_t island)>;
+/// The box that a shape sweeps over a window of its motion, error radius included.
+using SweptBounds = std::function<Aabb(const MovingShape&, const Window&)>;
 using BroadPhaseFactory = std::function<std::unique_ptr<BroadPhase>(std::size_t bodies)>;
 
 /// The three choices beside the scheme. Nothing here knows of any other.
@@ -25,6 +27,7 @@ struct Method {
   std::shared_ptr<const ContactDetector> detector;
   std::shared_ptr<const ImpactLaw> law;
   BroadPhaseFactory broad_phase;
+  SweptBounds swept_bounds;  ///< what a broad phase is told
 };
 
 struct SchemeOptions {

@@ -45,6 +45,8 @@ void EventWorld::take() {
       return cross_field(a, b, event.time, true);
     case Due::field_left:
       return cross_field(a, b, event.time, false);
+    case Due::horizon:
+      return predict(a, event.time);
     case Due::recheck:
       return predict_pair(a, b, event.time);
     case Due::impact:
@@ -237,12 +239,8 @@ void EventWorld::relaunch(BodyIndex a, BodyIndex b, Instant t) {
       continue;
     }
     for (const BodyIndex k : flow_of(i).island.bodies) {
-      for (const BodyIndex j : actors_[k].partners) {
-        if (i == b && j == a && model_.is_free(a)) {
-          continue;  // predicted with a already
-        }
-        predict_pair(k, j, t);
-      }
+      // The pair itself is predicted once.
+      predict(k, t, i == b && model_.is_free(a) ? a : k);
     }
   }
 }

@@ -1,6 +1,7 @@
 #include "core/schemes/event_world.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 // When will pairs meet or part?
 
@@ -11,10 +12,56 @@ void EventWorld::push(Instant t, Due due, BodyIndex a, BodyIndex b, double patie
   queue_.push({t, due, rank_[a], rank_[b], actors_[a].version, actors_[b].version, patience});
 }
 
-void EventWorld::predict(BodyIndex i, Instant t) {
-  for (const BodyIndex j : actors_[i].partners) {
-    predict_pair(i, j, t);
+void EventWorld::predict(BodyIndex i, Instant t, BodyIndex except) {
+  if (!broad_phase_) {
+    for (const BodyIndex j : actors_[i].partners) {
+      if (j != except) {
+        predict_pair(i, j, t);
+      }
+    }
+    return;
   }
+  open_window(i, t);
+  neighbours_.clear();
+  broad_phase_->candidates(i, neighbours_);
+  for (const BodyIndex j : neighbours_) {
+    if (j != except && model_.interacts(i, j)) {
+      predict_pair(i, j, t);
+    }
+  }
+  // Windows grow where few are near and shrink where many are: about ten neighbours cost least.
+  Actor& actor = actors_[i];
+  if (neighbours_.size() > 16) {
+    actor.reach *= 0.5;
+  } else if (neighbours_.size() < 8) {
+    actor.reach *= 1.5;
+  }
+}
+
+/// Tells the broad phase where i goes during its next window.
+void EventWorld::open_window(BodyIndex i, Instant t) {
+  Actor& actor = actors_[i];
+  if (model_.is_free(i)) {
+    actor.horizon = std::min({actor.motion.end(), end_, t + window_length(i, t)});
+    if (actor.horizon < actor.motion.end() && actor.horizon < end_) {
+      push(actor.horizon, Due::horizon, i, i);
+    }
+  }
+  const Instant until = std::max(std::min(actor.horizon, end_), t);
+  broad_phase_->update(i, swept_bounds_({model_.shape(i), actor.motion}, {t, until - t}));
+}
+
+/// How long it takes i to go as far as its reach, s.
+double EventWorld::window_length(BodyIndex i, Instant t) {
+  Actor& actor = actors_[i];
+  if (actor.reach == 0.0) {
+    actor.reach = 4.0 * bounding_radius(model_.shape(i));
+  }
+  const double s = t - actor.motion.start;
+  const double speed = actor.motion.velocity(s).norm();
+  const double acceleration = actor.motion.acceleration(s).norm();
+  // At least as far as its reach at constant acceleration: |v| t + |a| t^2 / 2 = reach.
+  return 2.0 * actor.reach / (speed + std::sqrt(speed * speed + 2.0 * acceleration * actor.reach));
 }
 
 void EventWorld::predict_pair(BodyIndex i, BodyIndex j, Instant t) {

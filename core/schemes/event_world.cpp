@@ -35,12 +35,9 @@ EventWorld::EventWorld(const Model& model, const Method& method, const SchemeOpt
   for (std::uint32_t r = 0; r < by_rank_.size(); ++r) {
     rank_[by_rank_[r]] = r;
   }
-  for (const BodyIndex i : by_rank_) {
-    for (const BodyIndex j : by_rank_) {
-      if (i != j && model.interacts(i, j)) {
-        actors_[i].partners.push_back(j);
-      }
-    }
+  for (const auto& [a, b] : model.pairs()) {
+    actors_[a].partners.push_back(b);
+    actors_[b].partners.push_back(a);
   }
   for (std::size_t k = 0; k < model.islands().size(); ++k) {
     Flow flow{.island = model.islands()[k], .stepper = method.stepper(model, k)};
@@ -48,6 +45,10 @@ EventWorld::EventWorld(const Model& model, const Method& method, const SchemeOpt
     flow.states.resize(flow.island.bodies.size());
     flow.motions.resize(flow.island.bodies.size());
     flows_.push_back(std::move(flow));
+  }
+  if (model.broad_phase() != "all-pairs") {
+    broad_phase_ = method.broad_phase(model.size());
+    swept_bounds_ = method.swept_bounds;
   }
   recorder_.begin(model_);
   account_.open(time_, now_);
@@ -58,6 +59,7 @@ void EventWorld::begin() {
     switch (model_.mobility(i)) {
       case Mobility::fixed:
         actors_[i].motion = Motion::at_rest(time_, now_[i].pose);
+        actors_[i].horizon = end_;
         break;
       case Mobility::driven:
         drive(i, time_);
@@ -77,8 +79,23 @@ void EventWorld::begin() {
       next_segment(flow, time_);
     }
   }
-  for (const auto& [a, b] : model_.pairs()) {
-    predict_pair(a, b, time_);
+  if (!broad_phase_) {
+    for (const auto& [a, b] : model_.pairs()) {
+      predict_pair(a, b, time_);
+    }
+    return;
+  }
+  for (const BodyIndex i : by_rank_) {
+    open_window(i, time_);
+  }
+  for (const BodyIndex i : by_rank_) {
+    neighbours_.clear();
+    broad_phase_->candidates(i, neighbours_);
+    for (const BodyIndex j : neighbours_) {
+      if (i < j && model_.interacts(i, j)) {
+        predict_pair(i, j, time_);
+      }
+    }
   }
 }
 
@@ -165,6 +182,7 @@ void EventWorld::next_segment(Flow& flow, Instant t) {
 
 void EventWorld::set_motion(BodyIndex i, const Motion& motion) {
   actors_[i].motion = motion;
+  actors_[i].horizon = motion.end();
   ++actors_[i].version;
   if (wants_motions_) {
     recorder_.motion(i, motion);
@@ -185,6 +203,7 @@ void EventWorld::hold(Flow& flow, Instant t) {
     until = std::min(until, lift_off_time(under, actor.support->normal, flow.island.inertia[0].mass,
                                           net_force(i)));
     actor.motion = ride(actor.motion, under, actor.support->normal);
+    actor.horizon = actor.motion.end();
     if (wants_motions_) {
       recorder_.motion(i, actor.motion);
     }

@@ -41,6 +41,8 @@ class EventWorld {
   struct Actor {
     Motion motion;
     std::uint32_t version = 0;
+    Instant horizon;     ///< its pairs have been predicted up to here
+    double reach = 0.0;  ///< how far it goes before its neighbours are looked up again, m
     std::optional<Support> support;
     Instant contact_begins = Instant::never();  ///< when its bounces have died down
     std::vector<BodyIndex> partners;            ///< it can interact with, by name
@@ -73,7 +75,10 @@ class EventWorld {
   [[nodiscard]] Vector3 net_force(BodyIndex i) const;
 
   // Predictions
-  void predict(BodyIndex i, Instant t);
+  void predict(BodyIndex i, Instant t) { predict(i, t, i); }
+  void predict(BodyIndex i, Instant t, BodyIndex except);
+  void open_window(BodyIndex i, Instant t);
+  [[nodiscard]] double window_length(BodyIndex i, Instant t);
   void predict_pair(BodyIndex i, BodyIndex j, Instant t);
   void predict_meeting(BodyIndex a, BodyIndex b, Instant t, double duration);
   void predict_parting(BodyIndex a, BodyIndex b, Instant t, double duration, Due due);
@@ -120,6 +125,9 @@ class EventWorld {
   State drawn_;   ///< scratch for frames
   std::vector<Vector3> field_forces_;
   EventQueue queue_;
+  std::unique_ptr<BroadPhase> broad_phase_;  ///< null: every partner is a neighbour
+  SweptBounds swept_bounds_;
+  std::vector<BodyIndex> neighbours_;  ///< scratch
 
   Instant time_;  ///< of the last event or frame
   Instant end_;
