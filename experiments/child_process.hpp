@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace kairos::experiments {
+
+enum class ChildOutput { shown, hidden };
+
+/// Runs a program (found on PATH) with its arguments, no shell in between, and waits for it.
+/// Returns its exit code; -1 where it cannot be started or was ended by a signal.
+int run_child(const std::vector<std::string>& command, ChildOutput output);
+
+}  // namespace kairos::experiments

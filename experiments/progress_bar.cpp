@@ -1,0 +1,45 @@
+#include "experiments/progress_bar.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <utility>
+
+namespace kairos::experiments {
+
+ProgressBar::ProgressBar(std::string label, std::size_t total)
+    : label_(std::move(label)),
+      total_(total),
+      terminal_(isatty(STDERR_FILENO) == 1),
+      start_(std::chrono::steady_clock::now()),
+      drawn_(start_) {}
+
+ProgressBar::~ProgressBar() {
+  if (terminal_) {
+    fmt::print(stderr, "\r\033[K");
+  }
+}
+
+void ProgressBar::advance() {
+  const std::lock_guard lock(mutex_);
+  ++done_;
+  const auto now = std::chrono::steady_clock::now();
+  if (terminal_ && (now - drawn_ > std::chrono::milliseconds(100) || done_ == total_)) {
+    drawn_ = now;
+    draw();
+  }
+}
+
+void ProgressBar::draw() const {
+  constexpr std::size_t width = 30;
+  const std::size_t filled = total_ == 0 ? width : width * done_ / total_;
+  const double elapsed = std::chrono::duration<double>(drawn_ - start_).count();
+  const double left =
+      elapsed * static_cast<double>(total_ - done_) / static_cast<double>(done_ == 0 ? 1 : done_);
+  fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {}/{} {:.0f} s left", label_, "", filled, "",
+             width - filled, done_, total_, left);
+  std::fflush(stderr);
+}
+
+}  // namespace kairos::experiments
