@@ -24,6 +24,41 @@ bool is_spherical(const Vector3& inertia) {
   return inertia.maxCoeff() - inertia.minCoeff() <= roundoff * inertia.maxCoeff();
 }
 
+/// The same decision for many bodies is told once.
+class Tally {
+ public:
+  void add(std::string_view what, const std::string& name, const std::string& reason) {
+    const auto same = [&](const Entry& e) { return e.what == what && e.reason == reason; };
+    auto found = std::find_if(entries_.begin(), entries_.end(), same);
+    if (found == entries_.end()) {
+      found = entries_.insert(entries_.end(), {std::string(what), reason, "", 0});
+    }
+    if (found->count < most_names) {
+      found->names += fmt::format("{}\"{}\"", found->count > 0 ? ", " : "", name);
+    }
+    ++found->count;
+  }
+  [[nodiscard]] std::vector<Decision> decisions(const std::string& topic) const {
+    std::vector<Decision> result;
+    for (const Entry& e : entries_) {
+      const std::string others =
+          e.count > most_names ? fmt::format(" and {} more", e.count - most_names) : "";
+      result.push_back({topic, fmt::format("{}: {}{}", e.what, e.names, others), e.reason});
+    }
+    return result;
+  }
+
+ private:
+  static constexpr std::size_t most_names = 4;
+  struct Entry {
+    std::string what;
+    std::string reason;
+    std::string names;
+    std::size_t count = 0;
+  };
+  std::vector<Entry> entries_;
+};
+
 /// Groups of bodies that forces couple: the smallest index of each body's group.
 std::vector<BodyIndex> group_of(const Scene& scene) {
   std::vector<BodyIndex> group(scene.bodies.size());
@@ -59,39 +94,41 @@ Model::Model(Scene scene, const ModelOptions& options)
   choose_motion();
 }
 
-void Model::decide(std::string topic, std::string text, std::string reason) {
-  decisions_.push_back({std::move(topic), std::move(text), std::move(reason)});
+void Model::decide(std::vector<Decision> decisions) {
+  for (Decision& decision : decisions) {
+    decisions_.push_back(std::move(decision));
+  }
 }
 
 /// Who moves whom, as what, under which gravity.
 void Model::choose_bodies() {
+  Tally tally;
   for (BodyIndex i = 0; i < size(); ++i) {
     const Body& b = body(i);
-    const Mobility kind = b.entity->mobility();
-    mobility_.push_back(b.drive != nullptr ? Mobility::driven : kind);
+    mobility_.push_back(b.drive != nullptr ? Mobility::driven : b.entity->mobility());
     shapes_.push_back(b.collision_shape());
     const bool accelerates = scene_.gravity == GravityMode::acceleration;
     const double weight = is_free(i) ? b.G * (accelerates ? b.mass : 1.0) : 0.0;
     gravity_force_.emplace_back(is_free(i) ? Vector3(weight * b.entity->gravity_direction())
                                            : Vector3(Vector3::Zero()));
     if (mobility_[i] == Mobility::fixed) {
-      decide("bodies", fmt::format("\"{}\" never moves", b.name),
-             fmt::format("a {} is fixed, and nothing drives it", b.entity->kind()));
+      tally.add("never moves", b.name,
+                fmt::format("a {} is fixed, and nothing drives it", b.entity->kind()));
     } else if (mobility_[i] == Mobility::driven) {
-      decide("bodies", fmt::format("\"{}\" follows its drive and feels no force", b.name),
-             b.drive->description());
+      tally.add("follows its drive and feels no force", b.name, b.drive->description());
     } else if (weight == 0.0) {
-      decide("bodies", fmt::format("\"{}\" feels no gravity", b.name), "its G is 0");
+      tally.add("feels no gravity", b.name, "its G is 0");
     }
     if (b.bounds == Bounds::obb && is_sphere(b.shape)) {
-      decide("bodies", fmt::format("\"{}\" collides as a box", b.name),
-             "the scene says bounds = \"obb\", as the thesis does");
+      tally.add("collides as a box", b.name, "the scene says bounds = \"obb\", as the thesis does");
     }
   }
+  decide(tally.decisions("bodies"));
 }
 
 /// Whose orientation is integrated at all.
 void Model::choose_rotation() {
+  Tally tally;
   for (BodyIndex i = 0; i < size(); ++i) {
     const Body& b = body(i);
     const bool could = is_free(i) && (b.entity->rotates() || is_sphere(shape(i)));
@@ -100,12 +137,17 @@ void Model::choose_rotation() {
     inertia_.push_back(
         {is_free(i) ? b.mass : -1.0, is_free(i) ? b.inertia : Vector3::Zero().eval(), rotates_[i]});
     if (is_free(i) && !rotates_[i]) {
-      decide("rotation", fmt::format("the orientation of \"{}\" is left out", b.name),
-             is_sphere(shape(i)) ? "a sphere looks the same from all sides, and without friction "
-                                   "nothing turns it"
-                                 : fmt::format("a {} does not turn", b.entity->kind()));
+      tally.add(
+          "orientation is left out", b.name,
+          is_sphere(shape(i))
+              ? "a sphere looks the same from all sides, and without friction nothing turns it"
+              : fmt::format("a {} does not turn", b.entity->kind()));
+    } else if (is_free(i)) {
+      tally.add("orientation is kept", b.name,
+                matters ? "impacts can turn it" : "leaving it out is switched off");
     }
   }
+  decide(tally.decisions("rotation"));
 }
 
 bool Model::can_interact(BodyIndex a, BodyIndex b) const {
@@ -134,12 +176,12 @@ void Model::choose_pairs() {
     }
   }
   const std::size_t all = size() * (size() - 1) / 2;
-  decide("pairs", fmt::format("{} of {} pairs are tested", pairs_.size(), all),
-         left_out == 0 ? "each can meet"
-                       : fmt::format("{} consist of bodies that no force moves: fixed, driven, or "
-                                     "fields",
-                                     left_out));
-  decide("broad phase", std::string(broad_phase_), "finds which of these pairs are near");
+  decide({{"pairs", fmt::format("{} of {} are tested", pairs_.size(), all),
+           left_out == 0 ? "nothing is left out"
+                         : fmt::format("{} cannot do anything to each other: neither moves freely, "
+                                       "or a field would act on what does not",
+                                       left_out)},
+          {"broad phase", std::string(broad_phase_), "finds which of these pairs are near"}});
 }
 
 /// What must be integrated together.
@@ -187,10 +229,10 @@ void Model::choose_islands() {
   }
   for (const Island& island : islands_) {
     if (island.bodies.size() > 1) {
-      decide("islands",
-             fmt::format("{} bodies from \"{}\" on are integrated together", island.bodies.size(),
-                         body(island.bodies.front()).name),
-             "forces couple them");
+      decide({{"islands",
+               fmt::format("{} bodies from \"{}\" on are integrated together", island.bodies.size(),
+                           body(island.bodies.front()).name),
+               "forces couple them"}});
     }
   }
 }
@@ -214,23 +256,23 @@ bool Model::keeps_constant_rate(BodyIndex i) const {
 
 /// Which islands move in closed form.
 void Model::choose_motion() {
+  Tally tally;
   for (const Island& island : islands_) {
-    const std::string name = body(island.bodies.front()).name;
     const bool parabola = island.constant_acceleration();
     const bool constant_rate = std::all_of(island.bodies.begin(), island.bodies.end(),
                                            [this](BodyIndex i) { return keeps_constant_rate(i); });
-    closed_form_.push_back(options_.closed_form && parabola && constant_rate);
-    if (closed_form_.back()) {
-      decide("motion", fmt::format("\"{}\" moves in closed form", name),
-             "only constant forces act on it, and its rotation is left out or of constant rate");
-    } else {
-      decide("motion", fmt::format("\"{}\" is integrated", name),
-             !options_.closed_form ? "closed forms are switched off"
-             : !parabola           ? "a force on it depends on the state or on time"
-                                   : "it can tumble: its moments of inertia differ, and an impact "
-                                     "can turn its axis");
+    const bool closed = options_.closed_form && parabola && constant_rate;
+    closed_form_.push_back(closed);
+    for (const BodyIndex i : island.bodies) {
+      tally.add(closed ? "closed form" : "integrated", body(i).name,
+                closed ? "only constant forces act on it; its rotation is left out or of constant "
+                         "rate"
+                : !options_.closed_form ? "closed forms are switched off"
+                : !parabola             ? "a force depends on the state or on time"
+                                        : "it can tumble: its moments of inertia differ");
     }
   }
+  decide(tally.decisions("motion"));
 }
 
 Vector3 Model::given_force(BodyIndex giver, const BodyState& state, BodyIndex receiver) const {

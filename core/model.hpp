@@ -89,7 +89,7 @@ class Model {
   void choose_motion();
   [[nodiscard]] bool keeps_constant_rate(BodyIndex i) const;
   [[nodiscard]] bool can_interact(BodyIndex a, BodyIndex b) const;
-  void decide(std::string topic, std::string text, std::string reason);
+  void decide(std::vector<Decision> decisions);
 
   Scene scene_;
   ModelOptions options_;
