@@ -5,6 +5,7 @@
 #include "ccd/certified.hpp"
 #include "ccd/conservative_advancement.hpp"
 #include "ccd/sat.hpp"
+#include "ccd/swept_box.hpp"
 #include "core/error.hpp"
 #include "core/laws/newton_law.hpp"
 #include "core/laws/thesis_law.hpp"
@@ -122,6 +123,13 @@ BroadPhaseFactory find_broad_phase(std::string_view name) {
     return [](std::size_t bodies) { return ccd::make_all_pairs(bodies); };
   }
   unknown("broad phase", name, broad_phases());
+}
+
+SweptBounds swept_bounds() {
+  return [](const MovingShape& moving, const Window& window) {
+    const double start = window.start - moving.motion.start;
+    return ccd::swept_aabb(moving.shape, moving.motion, start, start + window.duration);
+  };
 }
 
 }  // namespace kairos::experiments

@@ -33,5 +33,7 @@ struct IntegratorEntry {
 [[nodiscard]] IslandStepper find_integrator(std::string_view name,
                                             const StepperOptions& options = {});
 [[nodiscard]] BroadPhaseFactory find_broad_phase(std::string_view name);
+/// What a broad phase is told of a moving shape.
+[[nodiscard]] SweptBounds swept_bounds();
 
 }  // namespace kairos::experiments

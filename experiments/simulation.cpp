@@ -67,7 +67,7 @@ Plan make_plan(const Model& model, const RunChoice& choice) {
   Plan plan{find_scheme(choice.method.scheme),
             {find_integrator(choice.method.integrator, choice.stepper),
              find_detector(choice.method.detector), find_impact_law(choice.method.impact),
-             find_broad_phase(model.broad_phase())},
+             find_broad_phase(model.broad_phase()), swept_bounds()},
             scheme_options(model.scene(), choice)};
   const double frame = mean_frame_duration(plan.options.frames);
   require(positive(frame), "frame", frame, "a finite number > 0 (s)");
