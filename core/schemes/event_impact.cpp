@@ -169,7 +169,7 @@ void EventWorld::land(BodyIndex a, BodyIndex b, const Contact& contact, Instant 
     }
   }
   for (const BodyIndex i : {a, b}) {
-    if (model_.is_free(i) && creeps(i, tolerance)) {
+    if (model_.is_free(i) && creeps(i, tolerance, t)) {
       return stop(t, fmt::format("accumulation: impacts of {} follow each other without end, and "
                                  "that is not a ball on a surface",
                                  names(a, b)));
@@ -178,12 +178,15 @@ void EventWorld::land(BodyIndex a, BodyIndex b, const Contact& contact, Instant 
   relaunch(a, b, t);
 }
 
-bool EventWorld::creeps(BodyIndex i, double reach) {
+/// Whether impacts of i have followed each other many times without it moving as far as `reach`.
+bool EventWorld::creeps(BodyIndex i, double reach, Instant t) {
   Actor& actor = actors_[i];
-  const Vector3& here = now_[i].pose.position;
-  const bool moved = !((here - actor.last_impact).norm() <= reach);
-  actor.creeping = moved ? 0 : actor.creeping + 1;
-  actor.last_impact = here;
+  const double speed =
+      now_[i].twist.linear.norm() + now_[i].twist.angular.norm() * bounding_radius(model_.shape(i));
+  const bool moved = !((t - actor.last_impact) * std::max(speed, actor.last_speed) <= reach);
+  actor.creeping = moved || actor.last_impact == Instant::never() ? 0 : actor.creeping + 1;
+  actor.last_impact = t;
+  actor.last_speed = speed;
   return actor.creeping > most_creeping;
 }
 

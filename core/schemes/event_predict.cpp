@@ -94,6 +94,9 @@ void EventWorld::predict_meeting(BodyIndex a, BodyIndex b, Instant t, double dur
                                                     {t, duration}, options_.toi_tolerance);
   ++cost_.toi_queries;
   cost_.toi_evaluations += toi.evaluations;
+  if (!model_.is_free(a) && !model_.is_free(b)) {
+    return;  // asked all the same where nothing is left out; nothing can come of it
+  }
   const bool field = model_.is_field(a) || model_.is_field(b);
   switch (toi.status) {
     case ToiStatus::separated:

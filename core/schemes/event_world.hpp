@@ -47,8 +47,9 @@ class EventWorld {
     Instant contact_begins = Instant::never();  ///< when its bounces have died down
     std::vector<BodyIndex> partners;            ///< it can interact with, by name
     std::vector<BodyIndex> fields;              ///< it is in
-    int creeping = 0;                           ///< impacts in a row between which nothing moved
-    Vector3 last_impact = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
+    int creeping = 0;                           ///< impacts in a row between which it hardly moved
+    Instant last_impact = Instant::never();
+    double last_speed = 0.0;  ///< after that impact, m/s
   };
   struct Flow {
     Island island;
@@ -97,7 +98,7 @@ class EventWorld {
   void cross_field(BodyIndex a, BodyIndex b, Instant t, bool entering);
   void segment_end(BodyIndex i, Instant t);
   void relaunch(BodyIndex a, BodyIndex b, Instant t);
-  [[nodiscard]] bool creeps(BodyIndex i, double reach);
+  [[nodiscard]] bool creeps(BodyIndex i, double reach, Instant t);
   [[nodiscard]] double rest_tolerance(BodyIndex a, BodyIndex b, double e) const;
   void note(EventKind kind, BodyIndex a, BodyIndex b, Instant t);
   void stop(Instant t, std::string reason);
