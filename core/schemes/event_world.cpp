@@ -159,10 +159,12 @@ void EventWorld::next_segment(Flow& flow, Instant t) {
   }
   const double left = end_ - t;
   const double longest = options_.step > 0.0 ? options_.step : mean_frame_duration(options_.frames);
-  const double h = flow.exact ? left : std::min(left, longest);
-  if (!(h > 0.0)) {
+  if (!(left > 0.0)) {
     return;  // the run ends here
   }
+  // A closed form has no end of its own.
+  const double h =
+      flow.exact ? std::numeric_limits<double>::infinity() : std::min(left, longest);
   ++cost_.steps;
   const StepResult step = flow.stepper->step(flow.island, t, h, flow.states);
   if (!step.ok || !(step.advanced > 0.0)) {
@@ -175,7 +177,7 @@ void EventWorld::next_segment(Flow& flow, Instant t) {
   }
   hold(flow, t);
   const BodyIndex first = flow.island.bodies.front();
-  if (t + step.advanced < end_) {
+  if (step.advanced < left) {
     push(t + step.advanced, Due::segment_end, first, first);
   }
 }
@@ -220,7 +222,7 @@ void EventWorld::drive(BodyIndex i, Instant t) {
   }
   set_motion(i, model_.body(i).drive->motion(t, left));
   now_[i] = state_at(i, t);
-  if (actors_[i].motion.end() < end_) {
+  if (actors_[i].motion.duration < left) {
     push(actors_[i].motion.end(), Due::segment_end, i, i);
   }
 }
