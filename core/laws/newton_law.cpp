@@ -37,7 +37,7 @@ void push(const ImpactBody& body, const Contact& contact, const Vector3& impulse
 
 /// Work of a driven body on the other: impulse on the other times its own material velocity.
 double driven_work(const ImpactBody& driver, const Contact& contact, const Vector3& impulse) {
-  if (driver.body.entity->mobility() != Mobility::driven) {
+  if (driver.body.drive == nullptr) {
     return 0.0;
   }
   return impulse.dot(driver.state.twist.at(contact.point, driver.state.pose.position));

@@ -42,16 +42,11 @@ void book(const ImpactBody& giver, const Momentum& given, double m, const Vector
   if (m <= 0.0 || given.mass == -1.0) {
     return;  // nothing that has energy took, or a reflection: no work
   }
-  switch (giver.body.entity->mobility()) {
-    case Mobility::free:
-      return;  // what one gains the other loses
-    case Mobility::driven:
-      energy.driven_work += exchange_work(given, m, v);
-      return;
-    case Mobility::fixed:
-      energy.conveyor_and_hand += exchange_work(given, m, v);
-      return;
+  if (giver.inertia.mass > 0.0) {
+    return;  // free: what one gains the other loses
   }
+  const double work = exchange_work(given, m, v);
+  (giver.body.drive != nullptr ? energy.driven_work : energy.conveyor_and_hand) += work;
 }
 
 class ThesisLaw final : public ImpactLaw {

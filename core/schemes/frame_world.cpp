@@ -18,6 +18,7 @@ FrameWorld::FrameWorld(const Model& model, const Method& method, const SchemeOpt
       recorder_(recorder),
       wants_motions_(recorder.wants_motions()),
       bodies_(model.initial_state()),
+      after_(bodies_),
       given_force_(model.size(), Vector3::Zero()),
       trackers_(model.size()),
       paths_(model.size()),
@@ -162,8 +163,11 @@ void FrameWorld::book_step(Mover& mover, Instant t, double h, bool replayable) {
       recorder_.motion(mover.island.bodies[k], mover.motions[k]);
     }
   }
+  for (std::size_t k = 0; k < mover.states.size(); ++k) {
+    after_[mover.island.bodies[k]] = mover.states[k];
+  }
   const double roundoff = options_.roundoff && replayable ? replay(mover, h) : 0.0;
-  const Leg leg{mover.island, bodies_, mover.states, given_force_, mover.exact, roundoff};
+  const Leg leg{mover.island, bodies_, after_, given_force_, mover.exact, roundoff};
   if (mover.island.forces.empty()) {
     account_.leg(leg);
   } else {

@@ -118,6 +118,7 @@ class FrameWorld {
   const bool wants_motions_;
 
   State bodies_;
+  State after_;  ///< scratch: where a step ends, while `bodies_` is where it began
   std::vector<char> movable_;
   std::vector<Vector3> given_force_;  ///< net force given in contacts, N
   bool any_given_ = false;
