@@ -65,14 +65,14 @@ Layout layout_of(const Table& table) {
   return layout;
 }
 
-/// Median with quartiles; a fraction (a metric that is 0 or 1) as its mean.
+/// Median with quartiles; what is 0 or 1 in a run, as the fraction of runs.
 std::string statistic_cell(const std::vector<Cell>& row, std::size_t group, bool repeated,
                            const std::string& name) {
   const auto text = [&](std::size_t i) { return to_text(row[group + i]); };
   if (!repeated || text(0).empty()) {
     return data_cell(text(0));
   }
-  if (name == "tunnelled") {
+  if (name == "tunnelled" || name == "passed" || name == "turned") {
     return data_cell(text(0));
   }
   if (text(2) == text(4)) {
@@ -139,7 +139,8 @@ std::string summary_html(const std::string& folder, const std::string& sweep, st
   if (layout.repeated) {
     out +=
         "<p class=\"note\">Medians over the repeats, lower and upper quartile beside them; "
-        "<em>tunnelled</em> is the fraction of runs.</p>\n";
+        "what is 0 or 1 in a run (<em>tunnelled</em>, <em>passed</em>, <em>turned</em>) is the "
+        "fraction of runs.</p>\n";
   }
   return out;
 }

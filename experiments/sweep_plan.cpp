@@ -162,8 +162,10 @@ void fill(const SweepSpec& spec, PlannedRun& run) {
     }
   }
   MethodOptions options;
-  for (const Setting& option : method.options) {
-    set_option(spec, option, run.values, options, run.refused);
+  for (const auto* settings : {&spec.options, &method.options}) {
+    for (const Setting& option : *settings) {
+      set_option(spec, option, run.values, options, run.refused);
+    }
   }
   for (std::size_t i = 0; i < spec.axes.size(); ++i) {
     const Axis& axis = spec.axes[i];

@@ -395,9 +395,9 @@ void check_names(const Section& section, const SweepSpec& sweep) {
 }
 
 const Keys& sweep_keys() {
-  static const Keys keys = {"scene",   "subject", "seed",      "repeats",  "metrics", "series",
-                            "samples", "axis",    "method",    "set",      "derive",  "caption",
-                            "x",       "y",       "constants", "reference"};
+  static const Keys keys = {"scene",   "subject", "seed",      "repeats",   "metrics", "series",
+                            "samples", "axis",    "method",    "set",       "derive",  "caption",
+                            "x",       "y",       "constants", "reference", "options"};
   return keys;
 }
 
@@ -425,6 +425,15 @@ SweepSpec read_sweep(const Section& section, SweepSpec sweep) {
   }
   for (const Section& set : section.tables("set")) {
     read_settings(set, sweep.set);
+  }
+  for (const Section& options : section.tables("options")) {
+    for (const auto& [key, node] : options.entries()) {
+      if (!is_method_option(key)) {
+        options.fail(line_of(*node), key,
+                     fmt::format("unknown key; allowed: {}", method_option_names()));
+      }
+    }
+    read_settings(options, sweep.options);
   }
   if (const auto axes = section.tables("axis"); !axes.empty()) {
     sweep.axes.clear();

@@ -82,7 +82,8 @@ struct SweepSpec {
   Values constants;
   std::vector<Axis> axes;
   std::vector<MethodSpec> methods;
-  std::vector<Setting> set;
+  std::vector<Setting> options;  ///< of all methods; a method's own come after them
+  std::vector<Setting> set;      ///< scene values of all methods
   std::vector<Derived> derived;
   std::string reference;     ///< method that others are compared with: adds `METRIC_error` columns
   bool series = false;       ///< also writes energy over time and apex heights

@@ -13,7 +13,7 @@ def draw(data, figures):
     for method in methods:
         look = style.look(method, methods)
         of_method = pick(rows, method=method)
-        through.plot(*points(of_method, "frequency", "tunnelled.mean"), **look)
+        through.plot(*points(of_method, "frequency", "passed.mean"), **look)
         for panel, metric in ((depth, "max_penetration"), (time, "overlap_time")):
             panel.plot(*points(of_method, "frequency", f"{metric}.median"), **look)
             low = points(of_method, "frequency", f"{metric}.q1")

@@ -16,19 +16,15 @@ def draw(data, figures):
         for method in methods:
             look = style.look(method, methods)
             of_method = pick(rows, method=method)
-            panel.plot(*points(of_method, x, "turned_inwards.median"), **look)
-            low = points(of_method, x, "turned_inwards.q1")
-            high = points(of_method, x, "turned_inwards.q3")
-            panel.fill_between(low[0], low[1], high[1], color=look["color"], alpha=0.15,
-                               linewidth=0)
+            panel.plot(*points(of_method, x, "turned.mean"), **look)
         panel.plot(*points(pick(rows, method=methods[0]), x, "predicted.mean"),
                    **style.PREDICTION, label=label)
         panel.set_xlabel(data.label(sweep, x))
-        panel.set_ylabel("turned back inwards, per bounce")
+        panel.set_ylabel("fraction turned back inwards")
         panel.set_ylim(bottom=-0.01)
     panels[0].set_title("A frame time that varies by ±j")
     panels[1].set_title("Restitution e, frame time fixed")
     style.legend_below(figure, panels, columns=4)
-    figures.save(figure, "jiggle", "Reflections of a ball that was moving apart from the floor "
-                 "already, per reflection of an approaching ball: median and quartiles over start "
-                 "heights. Dotted: the predictions.")
+    figures.save(figure, "jiggle", "Runs in which the first bounce was followed by a reflection of a "
+                 "ball that was moving apart from the floor already, over stratified start heights. "
+                 "Dotted: the predictions.")

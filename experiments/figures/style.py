@@ -33,9 +33,14 @@ def use():
 
 
 def look(name, names=()):
-    """Line properties of a method: fixed for the schemes, by position for anything else."""
-    order = ORDER if name in ORDER else list(names)
-    i = order.index(name) % len(COLOURS) if name in order else 0
+    """Line properties of a method: fixed for the schemes, what is left for anything else."""
+    taken = [ORDER.index(other) for other in names if other in ORDER]
+    free = [i for i in range(len(COLOURS)) if i not in taken]
+    others = [other for other in names if other not in ORDER]
+    if name in ORDER:
+        i = ORDER.index(name)
+    else:
+        i = free[others.index(name) % len(free)] if name in others and free else 0
     return {"color": COLOURS[i], "marker": MARKERS[i], "linestyle": DASHES[i],
             "markerfacecolor": "white", "markeredgewidth": 1.1, "label": name}
 
