@@ -1,0 +1,394 @@
+#include "ccd/advancement.hpp"
+
+#include "ccd/closed_form.hpp"
+#include "ccd/pair_overlap.hpp"
+#include "ccd/relative_boxes.hpp"
+#include "ccd/roundoff.hpp"
+#include "ccd/separation_function.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kairos::ccd {
+namespace {
+
+constexpr double u = unit_roundoff;
+constexpr double greatest_turn = 4.0e5;  ///< rad within a window; beyond, answers are `undecided`
+
+/// One query in progress: where it is, what separates the shapes there, what it has cost.
+class Advancement {
+ public:
+  Advancement(const MovingShape& a, const MovingShape& b, const Window& window,
+              const AdvancementOptions& options)
+      : a_(a),
+        b_(b),
+        window_(window),
+        prove_(options.prove),
+        tolerance_(options.tolerance > 0.0 ? options.tolerance : default_tolerance(a, b, window)),
+        kind_(pair_kind(a.shape, b.shape)),
+        motion_(a, b, window),
+        turn_(motion_.bounds(0.0, motion_.duration())) {
+    const double angle = motion_.total_turn();
+    // A radian takes some 40 evaluations where bodies nearly touch all along.
+    budget_ = 20000 + static_cast<int>(40.0 * std::min(angle, greatest_turn));
+    end_ = angle > greatest_turn * (1.0 + 1e-9) ? motion_.duration() * (greatest_turn / angle)
+                                                : motion_.duration();
+    if (std::isnan(end_)) {  // an infinite angle in an infinite time
+      end_ = greatest_turn / (turn_.w_a + turn_.w_b);
+    }
+  }
+
+  TimeOfImpact run() {
+    look(0.0);
+    if (witness_.gap <= k_.error && !leave_touch()) {
+      return answer_;
+    }
+    while (advance_once()) {
+    }
+    return answer_;
+  }
+
+ private:
+  /// Where the shapes are at t, and what separates them.
+  void look(double t) {
+    motion_.evaluate(t, k_);
+    witness_ = find_witness(kind_, motion_, k_);
+    ++evaluations_;
+  }
+
+  /// Bounds of the motion from here on. Those of polynomials hold on a piece that follows the
+  /// steps: short where steps are short.
+  void renew_bounds() {
+    if (motion_.simple()) {
+      turn_.until = motion_.duration();
+      return;
+    }
+    if (k_.t + 16.0 * last_step_ < turn_.until || k_.t >= turn_.until) {
+      const double remaining = motion_.duration() - k_.t;
+      const double piece = last_step_ > 0.0 ? std::min(remaining, 4.0 * last_step_) : remaining;
+      turn_ = motion_.bounds(k_.t, piece);
+    }
+  }
+
+  /// The longest step that is proven free of contact.
+  double safe_step(double horizon) const {
+    double step = SeparationFunction(motion_, k_, turn_, witness_).advance(horizon);
+    if (witness_.frame == WitnessFrame::world && !motion_.turns_a() && !motion_.turns_b()) {
+      return step;
+    }
+    if (step < horizon) {
+      const Witness balls = between_balls(kind_, motion_, k_);
+      if (balls.gap > 0.0) {
+        step = std::max(step, SeparationFunction(motion_, k_, turn_, balls).advance(horizon));
+      }
+    }
+    if (step < horizon && witness_.frame != WitnessFrame::world &&
+        !(kind_ == PairKind::box_plane || kind_ == PairKind::sphere_plane)) {
+      Witness still = witness_;
+      still.frame = WitnessFrame::world;
+      step = std::max(step, SeparationFunction(motion_, k_, turn_, still).advance(horizon));
+    }
+    return step;
+  }
+
+  /// One step of the main loop: false when the answer is known.
+  bool advance_once() {
+    if (evaluations_ > budget_ || k_.t > end_) {
+      return undecided_until(motion_.duration());
+    }
+    if (witness_.gap <= tolerance_) {
+      ++near_;
+      const bool at_roundoff = witness_.gap <= 8.0 * k_.error / witness_.length;
+      const bool enough = !prove_ || at_roundoff || near_ % 8 == 5;
+      if (enough && resolve_contact()) {
+        return false;
+      }
+    } else {
+      near_ = 0;
+    }
+    renew_bounds();
+    const double remaining = motion_.duration() - k_.t;
+    const double horizon = motion_.simple() ? remaining : std::min(remaining, turn_.until - k_.t);
+    const double step = safe_step(horizon);
+    if (step >= remaining * (1.0 - 128.0 * u)) {
+      return separated();
+    }
+    const double next = k_.t + step;
+    if (!(next > k_.t)) {
+      if (!motion_.simple() && turn_.until - k_.t > 64.0 * ulp(k_.t)) {
+        last_step_ = (turn_.until - k_.t) / 64.0;  // bounds over a long piece were useless
+        return true;
+      }
+      return resolve_stuck();
+    }
+    last_step_ = step;
+    look(next);
+    return true;
+  }
+
+  /// Looks ahead from a gap within tolerance for a proven overlap. True if that settles the query.
+  bool resolve_contact() {
+    if (!prove_) {
+      return impact(k_.t, k_.t);
+    }
+    const Kinematics here = k_;
+    const Witness witness = witness_;
+    const double rate = approach();
+    const double reach = witness.gap + 4.0 * k_.error / witness.length;
+    double ahead = std::max(8.0 * ulp(here.t), rate > 0.0 ? 1.5 * reach / rate : 0.0);
+    const double remaining = motion_.duration() - here.t;
+    const bool stuck = witness.gap <= 2.0 * here.error / witness.length;
+    for (int attempt = 0; attempt < (stuck ? 200 : 3); ++attempt) {
+      ahead = std::min(ahead, remaining);
+      look(here.t + ahead);
+      if (proven_overlap(kind_, motion_, k_, witness_)) {
+        const double t_hi = k_.t;
+        k_ = here;
+        witness_ = witness;
+        return impact(here.t, t_hi);
+      }
+      if (witness_.gap > 2.0 * k_.error / witness_.length || !(ahead < remaining)) {
+        break;
+      }
+      ahead *= 2.0;
+    }
+    if (!stuck) {  // not proven yet: closer is better
+      k_ = here;
+      witness_ = witness;
+      return false;
+    }
+    const double t_hi = k_.t;
+    k_ = here;
+    witness_ = witness;
+    undecided_until(t_hi);
+    return true;
+  }
+
+  /// No step is possible any more, whatever the gap: time itself has no finer grain.
+  bool resolve_stuck() {
+    witness_.gap = std::min(witness_.gap, k_.error);
+    resolve_contact();
+    return false;
+  }
+
+  /// Speed at which the gap closes along the witness, m/s.
+  double approach() const { return -SeparationFunction(motion_, k_, turn_, witness_).rate(); }
+
+  /// The start is within roundoff of touching, or overlaps. True if the shapes leave each other and
+  /// the search goes on from a later time; false with the answer if not.
+  bool leave_touch() {
+    if (proven_overlap(kind_, motion_, k_, witness_)) {
+      answer_.status = ToiStatus::overlapping;
+      return finish(0.0, 0.0);
+    }
+    const double duration = motion_.duration();
+    const double horizon = motion_.simple() ? duration : turn_.until;
+    if (witness_.gap >= -2.0 * k_.error / witness_.length) {
+      const SeparationFunction separation(motion_, k_, turn_, witness_);
+      double left = separation.advance_from_touch(horizon);
+      if (!(left > 0.0) && kind_ == PairKind::box_box) {
+        left = leave_along_another_axis(horizon);
+      }
+      if (left >= duration * (1.0 - 128.0 * u) && duration > 0.0) {
+        separated();
+        return false;
+      }
+      if (left > 0.0) {
+        last_step_ = left;
+        look(left);
+        return true;
+      }
+      if (separation.rate() < -k_.rate_error) {
+        return enter();
+      }
+    }
+    return enter();
+  }
+
+  /// Touch along several axes (a corner, an edge): leaving along any of them is leaving.
+  double leave_along_another_axis(double horizon) const {
+    const RelativeBoxes boxes(motion_.half_a(), k_.R_WA, motion_.half_b(), k_.R_WB, k_.d);
+    double left = 0.0;
+    for (int axis = 0; axis < axis_count; ++axis) {
+      const AxisSeparation s = axis_separation(boxes, axis);
+      if (s.value - motion_.reach() < -k_.error || !(s.length > 0.0)) {
+        continue;
+      }
+      Witness witness;
+      witness.gap = s.gap() - motion_.reach();
+      witness.n = k_.R_WA * axis_normal(boxes, s);
+      witness.frame = axis < 3   ? (motion_.turns_a() ? WitnessFrame::a : WitnessFrame::world)
+                      : axis < 6 ? (motion_.turns_b() ? WitnessFrame::b : WitnessFrame::world)
+                                 : WitnessFrame::world;
+      left = std::max(left,
+                      SeparationFunction(motion_, k_, turn_, witness).advance_from_touch(horizon));
+    }
+    return left;
+  }
+
+  /// In touch and not provably leaving: an overlap soon is an impact now; a gap soon means that
+  /// they have left (rolling off, a turning corner); neither, that they slide.
+  bool enter() {
+    const Kinematics here = k_;
+    const Witness witness = witness_;
+    const double duration = motion_.duration();
+    const double rate = approach();
+    const double scale = motion_.speed_bound(k_, turn_, 0.0);
+    double ahead = rate > k_.rate_error ? 8.0 * k_.error / rate
+                   : scale > 0.0        ? 8.0 * k_.error / scale
+                                        : std::min(duration, 1.0);
+    for (int attempt = 0; attempt < 200 && ahead > 0.0; ++attempt) {
+      ahead = std::min(ahead, duration);
+      look(ahead);
+      if (proven_overlap(kind_, motion_, k_, witness_)) {
+        const double t_hi = k_.t;
+        k_ = here;
+        witness_ = witness;
+        impact(0.0, t_hi);
+        return false;
+      }
+      if (witness_.gap > 4.0 * k_.error / witness_.length) {
+        last_step_ = ahead;
+        return true;
+      }
+      if (!(ahead < duration) || !std::isfinite(2.0 * ahead)) {
+        break;
+      }
+      ahead *= 2.0;
+    }
+    k_ = here;
+    witness_ = witness;
+    undecided_until(duration);
+    return false;
+  }
+
+  // ---- answers: each returns false, "the query is settled" -----------------------------------
+
+  bool separated() {
+    answer_.status = ToiStatus::separated;
+    answer_.t_lo = answer_.t_hi = motion_.duration();
+    answer_.evaluations = evaluations_;
+    return false;
+  }
+  bool impact(double t_lo, double t_hi) {
+    answer_.status = ToiStatus::impact;
+    finish(t_lo, t_hi);
+    return true;
+  }
+  bool undecided_until(double t_hi) {
+    answer_.status = ToiStatus::undecided;
+    return finish(k_.t, t_hi);
+  }
+  bool finish(double t_lo, double t_hi);
+
+  MovingShape a_;
+  MovingShape b_;
+  Window window_;
+  bool prove_;
+  double tolerance_;
+  PairKind kind_;
+  PairMotion motion_;
+  TurnBounds turn_;
+  double end_ = 0.0;
+  int budget_ = 0;
+  int evaluations_ = 0;
+  int near_ = 0;
+  double last_step_ = 0.0;
+  Kinematics k_;
+  Witness witness_;
+  TimeOfImpact answer_;
+};
+
+/// Gap from below, normal and nearest points at `t_lo`.
+bool Advancement::finish(double t_lo, double t_hi) {
+  answer_.t_lo = t_lo;
+  answer_.t_hi = t_hi;
+  answer_.evaluations = evaluations_;
+  retreat_from_overlap(a_, b_, window_, answer_);
+  if (answer_.t_lo != k_.t) {
+    look(answer_.t_lo);
+  }
+  answer_.normal = witness_.n / witness_.length;
+  answer_.gap = std::max(0.0, witness_.gap - k_.error / witness_.length);
+  const Overlap where = measure_overlap(a_.shape, motion_.pose_a(answer_.t_lo), b_.shape,
+                                        motion_.pose_b(answer_.t_lo));
+  answer_.witness_a = where.point - answer_.normal * (0.5 * where.gap);
+  answer_.witness_b = where.point + answer_.normal * (0.5 * where.gap);
+  return false;
+}
+
+double coordinate_size(const MovingShape& shape, const Window& window) {
+  const Polynomial<3>& p = shape.motion.position;
+  const double s = std::abs(window.start - shape.motion.start) +
+                   (std::isfinite(window.duration) ? window.duration : 0.0);
+  double size = 0.0;
+  for (int k = p.degree(); k >= 0; --k) {
+    size = size * s + p[k].lpNorm<Eigen::Infinity>();
+  }
+  const double radius = bounding_radius(shape.shape);
+  return size + (std::isfinite(radius) ? radius : 0.0);
+}
+
+}  // namespace
+
+double default_tolerance(const MovingShape& a, const MovingShape& b, const Window& window) {
+  const double extent = std::min(smallest_extent(a.shape), smallest_extent(b.shape));
+  // Roundoff: 32 u of the largest coordinate that the motions reach.
+  return 1e-9 * extent + 32.0 * u * (coordinate_size(a, window) + coordinate_size(b, window));
+}
+
+TimeOfImpact advance_to_impact(const MovingShape& a, const MovingShape& b, const Window& window,
+                               const AdvancementOptions& options) {
+  return Advancement(a, b, window, options).run();
+}
+
+TimeOfImpact advance_to_separation(const MovingShape& a, const MovingShape& b, const Window& window,
+                                   double tolerance) {
+  const PairKind kind = pair_kind(a.shape, b.shape);
+  const PairMotion motion(a, b, window);
+  const double enough = tolerance > 0.0 ? tolerance : default_tolerance(a, b, window);
+  const double duration = motion.duration();
+  TimeOfImpact toi;
+  Kinematics k;
+  double t = 0.0;
+  double probe = 0.0;
+  bool settled = false;
+  for (int step = 0; step < 200000 && !settled; ++step) {
+    motion.evaluate(t + probe, k);
+    ++toi.evaluations;
+    const Witness witness = find_witness(kind, motion, k);
+    toi.normal = witness.n / witness.length;
+    if (witness.gap > k.error / witness.length && (t + probe > 0.0 || witness.gap > enough)) {
+      toi.status = t + probe > 0.0 ? ToiStatus::impact : ToiStatus::separated;
+      toi.t_lo = t;
+      toi.t_hi = t + probe;
+      return toi;
+    }
+    if (!(t + probe < duration)) {
+      break;
+    }
+    const double remaining = duration - t;
+    if (-witness.gap > enough) {  // deep: no point of b leaves a before depth / speed
+      t += probe;
+      probe = 0.0;
+      const double horizon = std::min(duration - t, std::max(1.0, t));
+      const TurnBounds turn = motion.bounds(t, horizon);
+      const double speed = motion.speed_bound(k, turn, horizon);
+      const double safe = speed > 0.0 ? (-witness.gap - k.error) / speed : horizon;
+      const double next = t + std::min({safe, horizon});
+      settled = !(next > t);
+      t = std::min(next, duration);
+    } else {  // within tolerance of parting: look ahead, ever further
+      const double speed = motion.speed_bound(k, motion.bounds(t, 0.0), 0.0);
+      const double least =
+          speed > 0.0 ? std::max(8.0 * ulp(t), 0.25 * enough / speed) : std::min(remaining, 1.0);
+      probe = std::min(remaining, std::max(2.0 * probe, least));
+      settled = !(t + probe > t);
+    }
+  }
+  toi.status = ToiStatus::overlapping;
+  toi.t_lo = toi.t_hi = duration;
+  return toi;
+}
+
+}  // namespace kairos::ccd

@@ -1,0 +1,164 @@
+#include "ccd/contact_patch.hpp"
+
+#include "ccd/nearest_points.hpp"
+#include "ccd/roundoff.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kairos::ccd {
+namespace {
+
+/// A convex polygon in space; clipping a rectangle by four planes leaves at most 8 corners.
+struct Polygon {
+  std::array<Vector3, 12> corners;
+  int size = 0;
+
+  [[nodiscard]] const Vector3& operator[](int i) const {
+    return corners[static_cast<std::size_t>(i)];
+  }
+  void add(const Vector3& corner) {
+    if (size < static_cast<int>(corners.size())) {
+      corners[static_cast<std::size_t>(size++)] = corner;
+    }
+  }
+};
+
+/// The part with sign * x[axis] <= limit [Sutherland1974].
+Polygon clipped(const Polygon& in, int axis, double sign, double limit) {
+  Polygon out;
+  for (int i = 0; i < in.size; ++i) {
+    const Vector3& p = in[i];
+    const Vector3& q = in[(i + 1) % in.size];
+    const double hp = sign * p[axis] - limit;
+    const double hq = sign * q[axis] - limit;
+    if (hp <= 0.0) {
+      out.add(p);
+    }
+    if ((hp < 0.0 && hq > 0.0) || (hp > 0.0 && hq < 0.0)) {
+      out.add(p + (hp / (hp - hq)) * (q - p));
+    }
+  }
+  return out;
+}
+
+/// Centroid of the area, or of the longest extent where there is none (an edge, a corner).
+Vector3 centroid(const Polygon& polygon) {
+  Vector3 sum = Vector3::Zero();
+  Vector3 area = Vector3::Zero();
+  double longest = 0.0;
+  Vector3 middle = polygon[0];
+  for (int i = 1; i + 1 < polygon.size; ++i) {
+    area += (polygon[i] - polygon[0]).cross(polygon[i + 1] - polygon[0]);
+  }
+  for (int i = 0; i < polygon.size; ++i) {
+    for (int k = 0; k < i; ++k) {
+      const double length = (polygon[i] - polygon[k]).norm();
+      if (length > longest) {
+        longest = length;
+        middle = 0.5 * (polygon[i] + polygon[k]);
+      }
+    }
+  }
+  // A sliver narrower than 1e-10 of its length is an edge to roundoff: its width is a difference of
+  // clipped coordinates.
+  const double doubled = area.norm();
+  if (doubled <= 1e-10 * longest * longest) {
+    return middle;
+  }
+  const Vector3 n = area / doubled;
+  for (int i = 1; i + 1 < polygon.size; ++i) {
+    const double part = (polygon[i] - polygon[0]).cross(polygon[i + 1] - polygon[0]).dot(n);
+    sum += (part / (3.0 * doubled)) * (polygon[i] + polygon[i + 1] - 2.0 * polygon[0]);
+  }
+  return polygon[0] + sum;
+}
+
+/// The patch on face `axis` (outward sign * unit vector) of the reference box at the origin.
+/// `half`, `d`, `R`: the other box seen from the reference box.
+ContactPatch on_face(const Vector3& reference, int axis, double sign, const Vector3& half,
+                     const Vector3& d, const Matrix3& R) {
+  // Incident face: its outward normal looks most against the reference normal.
+  int incident = 0;
+  for (int j = 1; j < 3; ++j) {
+    if (std::abs(R(axis, j)) > std::abs(R(axis, incident))) {
+      incident = j;
+    }
+  }
+  const double side = sign * R(axis, incident) > 0.0 ? -1.0 : 1.0;
+  const int m = (incident + 1) % 3;
+  const int n = (incident + 2) % 3;
+  const Vector3 centre = d + R.col(incident) * (side * half[incident]);
+  const Vector3 u = R.col(m) * half[m];
+  const Vector3 v = R.col(n) * half[n];
+  Polygon face;
+  face.add(centre + u + v);
+  face.add(centre - u + v);
+  face.add(centre - u - v);
+  face.add(centre + u - v);
+  for (const int k : {(axis + 1) % 3, (axis + 2) % 3}) {
+    for (const double s : {-1.0, 1.0}) {
+      const Polygon smaller = clipped(face, k, s, reference[k]);
+      if (smaller.size > 0) {  // beyond an edge of the reference face: keep the nearest part
+        face = smaller;
+      }
+    }
+  }
+  double lowest = infinity;
+  for (int i = 0; i < face.size; ++i) {
+    lowest = std::min(lowest, sign * face[i][axis]);
+  }
+  // Roundoff of coordinates that went through a rotation and a clip: 1024 u of the sizes.
+  const double level = lowest + 1024.0 * unit_roundoff * (reference.sum() + half.sum());
+  const Vector3 on_b = centroid(clipped(face, axis, sign, level));
+  Vector3 on_a = on_b;
+  on_a[axis] = sign * reference[axis];
+  return {on_a, on_b};
+}
+
+ContactPatch on_edges(const RelativeBoxes& s, const AxisSeparation& axis) {
+  const int i = (axis.axis - 6) / 3;
+  const int j = (axis.axis - 6) % 3;
+  const Vector3 n = axis_normal(s, axis);
+  Vector3 p = Vector3::Zero();
+  Vector3 q = s.d_A;
+  for (int k = 0; k < 3; ++k) {
+    if (k != i) {
+      p[k] = n[k] > 0.0 ? s.half_a[k] : -s.half_a[k];
+    }
+    if (k != j) {
+      q += s.axes_A.col(k) * (s.axes_A.col(k).dot(n) > 0.0 ? -s.half_b[k] : s.half_b[k]);
+    }
+  }
+  const NearestPoints nearest =
+      nearest_of_segments(p, Vector3::Unit(i), s.half_a[i], q, s.axes_A.col(j), s.half_b[j]);
+  return {nearest.on_a, nearest.on_b};
+}
+
+}  // namespace
+
+ContactPatch contact_patch(const RelativeBoxes& s, const AxisSeparation& axis) {
+  if (axis.axis < 3) {
+    return on_face(s.half_a, axis.axis, axis.sign, s.half_b, s.d_A, s.axes_A);
+  }
+  if (axis.axis < 6) {
+    const Matrix3 R = s.axes_A.transpose();
+    const Vector3 d = -(R * s.d_A);
+    const ContactPatch patch = on_face(s.half_b, axis.axis - 3, -axis.sign, s.half_a, d, R);
+    return {s.d_A + s.axes_A * patch.on_b, s.d_A + s.axes_A * patch.on_a};
+  }
+  return on_edges(s, axis);
+}
+
+Vector3 lowest_centroid(const Vector3& half, const Vector3& down, double roundoff) {
+  Vector3 point = Vector3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    // An axis that is level within roundoff contributes both its ends: their mean is 0.
+    if (half[k] * std::abs(down[k]) > roundoff) {
+      point[k] = down[k] > 0.0 ? half[k] : -half[k];
+    }
+  }
+  return point;
+}
+
+}  // namespace kairos::ccd

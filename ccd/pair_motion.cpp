@@ -1,0 +1,246 @@
+#include "ccd/pair_motion.hpp"
+
+#include "ccd/roundoff.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kairos::ccd {
+namespace {
+
+constexpr double u = unit_roundoff;
+
+double local_start(const Motion& motion, const Window& window) {
+  return window.start == motion.start ? 0.0 : window.start - motion.start;
+}
+
+struct RoundedBox {
+  Vector3 half = Vector3::Zero();
+  double radius = 0.0;
+  bool oriented = false;
+};
+
+RoundedBox rounded_box(const Shape& shape) {
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+    return {Vector3::Zero(), sphere->radius, false};
+  }
+  if (const auto* box = std::get_if<Box>(&shape)) {
+    return {box->half_extents, 0.0, true};
+  }
+  return {Vector3::Zero(), 0.0, true};
+}
+
+bool is_identity(const Vector4& q) { return q[1] == 0.0 && q[2] == 0.0 && q[3] == 0.0; }
+
+/// The rate of turn that the quaternion polynomial itself has (the motion's own polynomial for the
+/// angular velocity may be a better approximation of something else): w = 2 Im(Q' Q*) / |Q|^2.
+Vector3 rate_of_turn(const Motion& motion, double s) {
+  const Vector4 q = motion.quaternion(s);
+  const Vector4 r = motion.quaternion.derivative(s);
+  const Vector3 q_vector(q[1], q[2], q[3]);
+  const Vector3 r_vector(r[1], r[2], r[3]);
+  return (2.0 / q.squaredNorm()) * (q[0] * r_vector - r[0] * q_vector - r_vector.cross(q_vector));
+}
+
+/// Upper bound of |p| on [s0, s1] by its Bernstein coefficients, or of |p - p(s0)|.
+template <int Dim>
+double hull_bound(const Polynomial<Dim>& p, double s0, double s1, bool from_start) {
+  std::array<typename Polynomial<Dim>::Value, Polynomial<Dim>::max_degree + 1> b;
+  bernstein(p, s0, s1, b);
+  double largest = 0.0;
+  double size = 0.0;
+  const double reach = std::abs(s0) + 2.0 * (s1 - s0);
+  for (int k = p.degree(); k >= 0; --k) {
+    const auto& value = b[static_cast<std::size_t>(k)];
+    largest = std::max(largest, from_start ? (value - b[0]).norm() : value.norm());
+    size = size * reach + p[k].norm();
+  }
+  return largest * (1.0 + 8.0 * u) + 24.0 * (p.degree() + 1) * u * size;
+}
+
+/// |alpha| <= 2 |Q''| / |Q| + 4 (|Q'| / |Q|)^2, from differentiating w = 2 Im(Q' Q*) / |Q|^2.
+double angular_acceleration_bound(const Motion& motion, double s0, double s1, double w) {
+  if (motion.rotation != RotationKind::polynomial || motion.quaternion.degree() == 0) {
+    return 0.0;
+  }
+  const Polynomial<4> first = motion.quaternion.differentiated();
+  const double rate = hull_bound(first, s0, s1, false);
+  const double least = 1.998 * rate / w;  // the lower bound of |Q| that gave w, to be safe
+  return rate > 0.0 ? 2.0 * hull_bound(first.differentiated(), s0, s1, false) / least + w * w : 0.0;
+}
+
+}  // namespace
+
+PairMotion::PairMotion(const MovingShape& a, const MovingShape& b, const Window& window)
+    : motion_a_(&a.motion),
+      motion_b_(&b.motion),
+      s_a_(local_start(a.motion, window)),
+      s_b_(local_start(b.motion, window)),
+      duration_(window.duration) {
+  const RoundedBox box_a = rounded_box(a.shape);
+  const RoundedBox box_b = rounded_box(b.shape);
+  half_a_ = box_a.half;
+  half_b_ = box_b.half;
+  radius_a_ = half_a_.norm() * (1.0 + 4.0 * u);
+  radius_b_ = half_b_.norm() * (1.0 + 4.0 * u);
+  error_reach_ = a.motion.error_radius + b.motion.error_radius;
+  reach_ = (box_a.radius + box_b.radius) + error_reach_;
+  oriented_a_ = box_a.oriented;
+  oriented_b_ = box_b.oriented;
+  turns_a_ = oriented_a_ && a.motion.rotation != RotationKind::fixed;
+  turns_b_ = oriented_b_ && b.motion.rotation != RotationKind::fixed;
+
+  // d = p_b - p_a in window time; of its rounding, that of the shifts grows as the motions do from
+  // their own starts, that of the difference only with d itself: far from the origin two bodies
+  // that move together lose nothing.
+  const auto seen = [this](const Motion& motion, double s) {
+    if (s == 0.0 || motion.position.degree() == 0) {
+      return motion.position;
+    }
+    const Polynomial<3> magnitudes = [&motion] {
+      Polynomial<3> m = motion.position;
+      for (int k = 0; k <= m.degree(); ++k) {
+        m[k].setConstant(motion.position[k].lpNorm<Eigen::Infinity>());
+      }
+      return m;
+    }();
+    const Polynomial<3> shifted_magnitudes = magnitudes.shifted(std::abs(s));
+    for (int k = 0; k <= magnitudes.degree(); ++k) {
+      position_error_[static_cast<std::size_t>(k)] +=
+          4.0 * (magnitudes.degree() + 1) * u * shifted_magnitudes[k][0];
+    }
+    return motion.position.shifted(s);
+  };
+  d_ = seen(b.motion, s_b_);
+  const Polynomial<3> p_a = seen(a.motion, s_a_);
+  d_.resize(std::max(d_.degree(), p_a.degree()));
+  for (int k = 0; k <= p_a.degree(); ++k) {
+    d_[k] -= p_a[k];
+  }
+  for (int k = 0; k <= d_.degree(); ++k) {
+    position_error_[static_cast<std::size_t>(k)] +=
+        (4.0 * k + 8.0) * u * d_[k].lpNorm<Eigen::Infinity>();
+  }
+  if (d_.degree() > 2) {
+    simple_ = false;
+    curvature_ = d_.differentiated().differentiated();
+    for (int k = 0; k <= curvature_.degree(); ++k) {
+      curvature_[k] *= 0.5;
+    }
+  }
+  for (const bool second : {false, true}) {
+    const Motion& motion = second ? b.motion : a.motion;
+    const double s = second ? s_b_ : s_a_;
+    if (!(second ? oriented_b_ : oriented_a_)) {
+      continue;
+    }
+    if (!(second ? turns_b_ : turns_a_)) {
+      rotation_error_ += is_identity(motion.quaternion[0]) ? 0.0 : 8.0 * u;
+    } else if (motion.rotation == RotationKind::constant_rate) {
+      rotation_error_ += 24.0 * u;
+      if (s != 0.0) {  // s + t is rounded
+        const double rate = motion.angular_velocity[0].norm();
+        rotation_error_ += 2.0 * u * rate * std::abs(s);
+        rotation_error_rate_ += 2.0 * u * rate;
+      }
+    } else {
+      simple_ = false;
+      const int degree = motion.quaternion.degree();
+      double size = 0.0;
+      const double end = std::isfinite(duration_) ? std::abs(s) + duration_ : std::abs(s);
+      for (int k = degree; k >= 0; --k) {
+        size = size * end + motion.quaternion[k].norm();
+      }
+      rotation_error_ += (24.0 + 8.0 * degree) * u * std::max(1.0, size);
+    }
+  }
+}
+
+void PairMotion::orient(const Motion& motion, double s, bool turns, Matrix3& R, Vector3& w) const {
+  R = motion.orientation(s).toRotationMatrix();
+  if (!turns) {
+    w.setZero();
+  } else if (motion.rotation == RotationKind::polynomial) {
+    w = rate_of_turn(motion, s);
+  } else {
+    w = motion.angular_velocity[0];
+  }
+}
+
+void PairMotion::evaluate(double t, Kinematics& k) const {
+  const int degree = d_.degree();
+  k.t = t;
+  Vector3 d = d_[degree];
+  Vector3 v = Vector3::Zero();
+  Vector3 c = Vector3::Zero();
+  double error = position_error_[static_cast<std::size_t>(degree)];
+  double error_rate = error * degree;
+  for (int i = degree - 1; i >= 0; --i) {
+    c = c * t + v;
+    v = v * t + d;
+    d = d * t + d_[i];
+    error = error * t + position_error_[static_cast<std::size_t>(i)];
+    if (i > 0) {
+      error_rate = error_rate * t + position_error_[static_cast<std::size_t>(i)] * i;
+    }
+  }
+  k.d = d;
+  k.v = v;
+  k.c = c;
+  if (oriented_a_) {
+    orient(*motion_a_, s_a_ + t, turns_a_, k.R_WA, k.w_a);
+  } else {
+    k.w_a.setZero();
+  }
+  if (oriented_b_) {
+    orient(*motion_b_, s_b_ + t, turns_b_, k.R_WB, k.w_b);
+  } else {
+    k.w_b.setZero();
+  }
+  const double size = d.lpNorm<1>() + half_a_.sum() + half_b_.sum();
+  const double rotation = rotation_error_ + rotation_error_rate_ * t + 16.0 * u;
+  k.error = 2.0 * error + rotation * size + 4.0 * u * reach_;
+  k.rate_error = 2.0 * error_rate +
+                 2.0 * rotation * (v.lpNorm<1>() + (k.w_a.lpNorm<1>() + k.w_b.lpNorm<1>()) * size);
+}
+
+TurnBounds PairMotion::bounds(double t, double horizon) const {
+  TurnBounds turn;
+  turn.until = std::min(t + horizon, duration_);
+  const double s0_a = s_a_ + t;
+  const double s1_a = s_a_ + turn.until;
+  const double s0_b = s_b_ + t;
+  const double s1_b = s_b_ + turn.until;
+  if (turns_a_) {
+    turn.w_a = motion_a_->angular_speed_bound(s0_a, s1_a);
+    turn.alpha_a = angular_acceleration_bound(*motion_a_, s0_a, s1_a, turn.w_a);
+  }
+  if (turns_b_) {
+    turn.w_b = motion_b_->angular_speed_bound(s0_b, s1_b);
+    turn.alpha_b = angular_acceleration_bound(*motion_b_, s0_b, s1_b, turn.w_b);
+  }
+  if (d_.degree() > 2) {
+    turn.bend = hull_bound(curvature_, t, turn.until, true);
+  }
+  return turn;
+}
+
+double PairMotion::total_turn() const {
+  double turn = 0.0;
+  if (turns_a_) {
+    turn += motion_a_->angular_speed_bound(s_a_, s_a_ + duration_);
+  }
+  if (turns_b_) {
+    turn += motion_b_->angular_speed_bound(s_b_, s_b_ + duration_);
+  }
+  return turn > 0.0 ? turn * duration_ : 0.0;
+}
+
+double PairMotion::speed_bound(const Kinematics& k, const TurnBounds& turn, double horizon) const {
+  const double bent = 2.0 * (k.c.norm() + turn.bend);
+  return (k.v.norm() + (bent > 0.0 ? bent * horizon : 0.0) + turn.w_a * radius_a_ +
+          turn.w_b * radius_b_) *
+         (1.0 + 16.0 * u);
+}
+
+}  // namespace kairos::ccd

@@ -1,0 +1,89 @@
+#pragma once
+
+#include "core/contact_detector.hpp"
+
+namespace kairos::ccd {
+
+/// Two moving shapes at one instant of a window, world frame: what a separation function and its
+/// rate are made of. Shapes are rounded boxes: a ball is a box of extent 0 and its radius.
+struct Kinematics {
+  double t = 0.0;  ///< window time, s
+  Vector3 d;       ///< origin of b from the origin of a, m
+  Vector3 v;       ///< its rate, m/s
+  Vector3 c;       ///< d(t + h) = d + v h + c h^2, up to `TurnBounds::bend` h^2, m/s^2
+  Matrix3 R_WA;    ///< columns: axes of a
+  Matrix3 R_WB;
+  Vector3 w_a;  ///< angular velocities, rad/s
+  Vector3 w_b;
+  double error = 0.0;       ///< bound of the rounding error of any separation, m
+  double rate_error = 0.0;  ///< the same of its rate, m/s
+};
+
+/// Bounds of what `Kinematics` does not say, valid from its time until `until`.
+struct TurnBounds {
+  double until = 0.0;
+  double w_a = 0.0, w_b = 0.0;          ///< angular speeds, rad/s
+  double alpha_a = 0.0, alpha_b = 0.0;  ///< angular accelerations, rad/s^2
+  double bend = 0.0;                    ///< of d: |d'' - 2 c| <= 2 bend, m/s^2
+};
+
+/// The two motions of a query, in window time.
+class PairMotion {
+ public:
+  PairMotion(const MovingShape& a, const MovingShape& b, const Window& window);
+
+  [[nodiscard]] double duration() const { return duration_; }
+  /// Half extents of the rounded boxes (0 for spheres and half-spaces).
+  [[nodiscard]] const Vector3& half_a() const { return half_a_; }
+  [[nodiscard]] const Vector3& half_b() const { return half_b_; }
+  /// Radii of the balls around the boxes.
+  [[nodiscard]] double radius_a() const { return radius_a_; }
+  [[nodiscard]] double radius_b() const { return radius_b_; }
+  /// Sphere radii and error radii: what every separation is lowered by.
+  [[nodiscard]] double reach() const { return reach_; }
+  /// Its part that is error radii.
+  [[nodiscard]] double error_reach() const { return error_reach_; }
+  /// Does the orientation of a (b) matter and change?
+  [[nodiscard]] bool turns_a() const { return turns_a_; }
+  [[nodiscard]] bool turns_b() const { return turns_b_; }
+  /// True if d is a parabola and both rates of turn are constant: bounds then hold for ever.
+  [[nodiscard]] bool simple() const { return simple_; }
+
+  void evaluate(double t, Kinematics& k) const;
+  /// Bounds on [t, t + horizon] (cut at the end of the window).
+  [[nodiscard]] TurnBounds bounds(double t, double horizon) const;
+  /// Upper bound of the angle that both turn through in the window together, rad.
+  [[nodiscard]] double total_turn() const;
+  /// Upper bound of the speed of any point of b against any point of a on [t, t + horizon], m/s.
+  [[nodiscard]] double speed_bound(const Kinematics& k, const TurnBounds& turn,
+                                   double horizon) const;
+  [[nodiscard]] Pose pose_a(double t) const { return motion_a_->pose(s_a_ + t); }
+  [[nodiscard]] Pose pose_b(double t) const { return motion_b_->pose(s_b_ + t); }
+
+ private:
+  void orient(const Motion& motion, double s, bool turns, Matrix3& R, Vector3& w) const;
+
+  const Motion* motion_a_;
+  const Motion* motion_b_;
+  double s_a_;  ///< local time of a at the start of the window
+  double s_b_;
+  double duration_;
+  Vector3 half_a_ = Vector3::Zero();
+  Vector3 half_b_ = Vector3::Zero();
+  double radius_a_ = 0.0;
+  double radius_b_ = 0.0;
+  double reach_ = 0.0;
+  double error_reach_ = 0.0;
+  bool oriented_a_ = false;  ///< the orientation matters: a box or a half-space
+  bool oriented_b_ = false;
+  bool turns_a_ = false;
+  bool turns_b_ = false;
+  bool simple_ = true;
+  Polynomial<3> d_;
+  Polynomial<3> curvature_;  ///< d'' / 2, degree > 2 only
+  std::array<double, Polynomial<3>::max_degree + 1> position_error_{};  ///< coefficients in t
+  double rotation_error_ = 0.0;       ///< of the entries of both rotation matrices
+  double rotation_error_rate_ = 0.0;  ///< its growth with time, 1/s
+};
+
+}  // namespace kairos::ccd

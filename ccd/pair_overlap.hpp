@@ -1,0 +1,16 @@
+#pragma once
+
+#include "core/shape.hpp"
+#include "core/time_of_impact.hpp"
+
+namespace kairos::ccd {
+
+/// The two questions about shapes at rest, for every combination of sphere, box and half-space.
+/// Closed sets: touching is overlapping. Two half-spaces never meet.
+[[nodiscard]] bool shapes_overlap(const Shape& a, const Pose& pose_a, const Shape& b,
+                                  const Pose& pose_b);
+/// Signed gap, normal from a to b, and centroid of the contact patch.
+[[nodiscard]] Overlap measure_overlap(const Shape& a, const Pose& pose_a, const Shape& b,
+                                      const Pose& pose_b);
+
+}  // namespace kairos::ccd

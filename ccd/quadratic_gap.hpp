@@ -1,0 +1,38 @@
+#pragma once
+
+namespace kairos::ccd {
+
+/// A gap c0 + c1 t + c2 t^2 (m) whose coefficients are known to within e0, e1, e2.
+struct QuadraticGap {
+  double c0 = 0.0, c1 = 0.0, c2 = 0.0;
+  double e0 = 0.0, e1 = 0.0, e2 = 0.0;
+
+  /// Value by compensated Horner: as if in twice the precision, then rounded [Langlois2007].
+  [[nodiscard]] double operator()(double t) const;
+  [[nodiscard]] double rate(double t) const { return c1 + 2.0 * c2 * t; }
+  /// Bound of the error of the value at t.
+  [[nodiscard]] double error(double t) const;
+};
+
+/// What the first descent of a gap through zero looks like.
+enum class Descent {
+  none,      ///< the gap stays positive (or, from touch, never comes back)
+  found,     ///< positive before t_lo (after leaving, if it starts in touch), negative at t_hi
+  in_touch,  ///< starts within `touch` of zero and does not leave: approaching
+  sliding,   ///< starts within `touch` of zero and stays there
+  grazing,   ///< its least value, between t_lo and t_hi, is zero to roundoff
+  inside,    ///< starts below -touch
+};
+struct FirstDescent {
+  Descent kind = Descent::none;
+  double t_lo = 0.0;
+  double t_hi = 0.0;
+};
+
+/// First time t > 0 at which the gap descends through zero. The roots are those of the numerically
+/// stable formula with a compensated discriminant [Kahan2004], rounded outwards by two ulp and by
+/// what the errors of the coefficients amount to, until the signs at t_lo and t_hi are proven.
+/// `touch` (m): a gap within it of zero at the start is a contact that began before.
+[[nodiscard]] FirstDescent first_descent(const QuadraticGap& gap, double touch);
+
+}  // namespace kairos::ccd

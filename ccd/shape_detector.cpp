@@ -1,0 +1,70 @@
+#include "ccd/shape_detector.hpp"
+
+#include "ccd/advancement.hpp"
+#include "ccd/closed_form.hpp"
+#include "ccd/pair_overlap.hpp"
+#include "ccd/swept_box.hpp"
+
+#include <utility>
+
+namespace kairos::ccd {
+namespace {
+
+bool in_order(const Shape& a, const Shape& b) { return a.index() <= b.index(); }
+
+bool both_half_spaces(const Shape& a, const Shape& b) {
+  return std::holds_alternative<HalfSpace>(a) && std::holds_alternative<HalfSpace>(b);
+}
+
+TimeOfImpact never(const Window& window) {
+  TimeOfImpact toi;
+  toi.t_lo = toi.t_hi = window.duration;
+  return toi;
+}
+
+}  // namespace
+
+TimeOfImpact exchanged(TimeOfImpact toi) {
+  toi.normal = -toi.normal;
+  std::swap(toi.witness_a, toi.witness_b);
+  return toi;
+}
+
+bool ShapeDetector::overlaps(const Shape& a, const Pose& pose_a, const Shape& b,
+                             const Pose& pose_b) const {
+  return shapes_overlap(a, pose_a, b, pose_b);
+}
+
+Overlap ShapeDetector::overlap(const Shape& a, const Pose& pose_a, const Shape& b,
+                               const Pose& pose_b) const {
+  return measure_overlap(a, pose_a, b, pose_b);
+}
+
+TimeOfImpact ShapeDetector::time_of_impact(const MovingShape& a, const MovingShape& b,
+                                           const Window& window, double tolerance) const {
+  if (both_half_spaces(a.shape, b.shape)) {
+    return never(window);
+  }
+  return in_order(a.shape, b.shape) ? ordered_time_of_impact(a, b, window, tolerance)
+                                    : exchanged(ordered_time_of_impact(b, a, window, tolerance));
+}
+
+TimeOfImpact ShapeDetector::time_of_separation(const MovingShape& a, const MovingShape& b,
+                                               const Window& window, double tolerance) const {
+  if (both_half_spaces(a.shape, b.shape)) {
+    return never(window);
+  }
+  if (auto toi = closed_form_separation(a, b, window)) {
+    return *toi;
+  }
+  return in_order(a.shape, b.shape) ? advance_to_separation(a, b, window, tolerance)
+                                    : exchanged(advance_to_separation(b, a, window, tolerance));
+}
+
+bool ShapeDetector::swept_overlap(const MovingShape& a, const MovingShape& b,
+                                  const Window& window) const {
+  return in_order(a.shape, b.shape) ? swept_shapes_overlap(a, b, window)
+                                    : swept_shapes_overlap(b, a, window);
+}
+
+}  // namespace kairos::ccd

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "core/broad_phase.hpp"
+#include "core/contact_detector.hpp"
+
+namespace kairos::ccd {
+
+/// An oriented box in the world.
+struct OrientedBox {
+  Vector3 centre = Vector3::Zero();        ///< m
+  Matrix3 axes = Matrix3::Identity();      ///< columns, orthonormal
+  Vector3 half_extents = Vector3::Zero();  ///< m
+};
+
+/// How far a moving shape reaches along a fixed direction over [s0, s1] of its motion: an interval
+/// that contains n . x for all its points x, rounding included. The translation is bounded by its
+/// Bernstein coefficients, the turning extents by the cosines of the least angles that the axes can
+/// make with n.
+struct Reach {
+  double lower = 0.0;  ///< m
+  double upper = 0.0;  ///< m
+};
+[[nodiscard]] Reach swept_reach(const Shape& shape, const Motion& motion, double s0, double s1,
+                                const Vector3& n);
+
+/// The box, with these axes, that contains a shape during [s0, s1] of its motion.
+[[nodiscard]] OrientedBox swept_box(const Shape& shape, const Motion& motion, double s0, double s1,
+                                    const Matrix3& axes);
+/// The thesis' construction (fig. 14): one box around both end positions, aligned with the
+/// displacement (with the body's own axes where there is none), and around all that is between.
+[[nodiscard]] OrientedBox swept_box(const Shape& shape, const Motion& motion, double s0, double s1);
+
+/// Axis-aligned box of a shape during [s0, s1] of its motion, for the broad phase. A half-space
+/// fills everything it can reach: unbounded sides are infinite.
+[[nodiscard]] Aabb swept_aabb(const Shape& shape, const Motion& motion, double s0, double s1);
+
+/// Do the swept boxes (fig. 14) of two shapes over a window overlap? "No" is proven. Shapes in the
+/// order sphere, box, half-space.
+[[nodiscard]] bool swept_shapes_overlap(const MovingShape& a, const MovingShape& b,
+                                        const Window& window);
+
+}  // namespace kairos::ccd
