@@ -1,6 +1,7 @@
 #include "experiments/cli.hpp"
 
 #include "core/error.hpp"
+#include "core/nearest_name.hpp"
 #include "experiments/commands.hpp"
 #include "experiments/run_error.hpp"
 #include "experiments/version.hpp"
@@ -14,6 +15,9 @@
 #include <exception>
 #include <iostream>
 #include <new>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace kairos::experiments {
 namespace {
@@ -46,6 +50,20 @@ void add_commands(CLI::App& app) {
   add_reproduce_command(app);
 }
 
+/// CLI11 only says that a command is missing where a person has mistyped one.
+void refuse_unknown_command(const CLI::App& app) {
+  const std::vector<std::string> words = app.remaining();
+  if (words.empty() || !app.get_subcommands().empty()) {
+    return;
+  }
+  std::vector<std::string_view> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.emplace_back(command->get_name());
+  }
+  throw InputError("", 0, words.front(),
+                   "is neither a command nor an option; " + suggestion(words.front(), names));
+}
+
 int parse_and_run(int argc, const char* const* argv) {
   CLI::App app{"What happens between two frames, and what does it cost to know?", "kairos"};
   app.set_version_flag("--version", "kairos " + std::string(version()));
@@ -54,6 +72,9 @@ int parse_and_run(int argc, const char* const* argv) {
   add_commands(app);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::RequiredError& error) {
+    refuse_unknown_command(app);
+    return app.exit(error), input_wrong;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? flush_results() : input_wrong;
   }

@@ -104,7 +104,7 @@ std::shared_ptr<const ImpactLaw> find_impact_law(std::string_view name) {
 IslandStepper find_integrator(std::string_view name, const StepperOptions& options) {
   if (name == "auto") {
     const StepperFactory closed_form = find_entry("closed-form").make;
-    const StepperFactory general = find_entry("rk4").make;
+    const StepperFactory general = find_entry("dopri5").make;
     return [=](const Model& model, std::size_t island) {
       return model.closed_form(island) ? closed_form(options) : general(options);
     };

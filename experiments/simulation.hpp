@@ -24,11 +24,11 @@ struct MethodChoice {
 
 /// What a person may add to a scene and a method.
 struct RunChoice {
-  MethodChoice method;
-  std::optional<FrameTimes> frames;  ///< instead of the scene's
-  std::optional<double> duration;    ///< s, instead of the scene's
-  std::optional<double> step;        ///< s, longest integrator step under `event-driven`
-  StepperOptions stepper;
+  MethodChoice method = {};
+  std::optional<FrameTimes> frames = {};  ///< instead of the scene's
+  std::optional<double> duration = {};    ///< s, instead of the scene's
+  std::optional<double> step = {};        ///< s, longest integrator step under `event-driven`
+  StepperOptions stepper = {};
   double threshold = 0.0;  ///< m, see `SchemeOptions`
   bool equal_substeps = false;
   std::int64_t max_substeps = 100000;

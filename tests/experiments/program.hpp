@@ -15,8 +15,8 @@ struct Outcome {
 };
 
 struct Surroundings {
-  std::string input;             ///< on stdin
-  std::string output;            ///< file that takes stdout; empty: caught in `Outcome::out`
+  std::string input = {};        ///< on stdin
+  std::string output = {};       ///< file that takes stdout; empty: caught in `Outcome::out`
   std::size_t largest_file = 0;  ///< bytes; 0: no limit. Stands for a disk that fills
 };
 
