@@ -3,6 +3,7 @@
 #include "ccd/pair_overlap.hpp"
 #include "ccd/parabola.hpp"
 #include "ccd/quadratic_gap.hpp"
+#include "ccd/rotation_matrix.hpp"
 #include "ccd/roundoff.hpp"
 
 #include <algorithm>
@@ -161,7 +162,7 @@ std::optional<SphereAndPlane> sphere_and_plane(const MovingShape& a, const Movin
 }
 
 Vector3 plane_normal(const Motion& plane) {
-  return half_space_normal({plane.position[0], plane.orientation(0.0)});
+  return rotation_matrix(plane.orientation(0.0)).col(1);
 }
 
 QuadraticGap gap_of(const SphereAndPlane& pair, const Window& window, const Vector3& n) {
@@ -173,8 +174,8 @@ QuadraticGap gap_of(const SphereAndPlane& pair, const Window& window, const Vect
 
 /// Gap, normal (from the sphere into the plane) and witnesses at `t_lo`, after stepping back until
 /// the float gap is positive too.
-void complete(const SphereAndPlane& pair, const Window& window, const Vector3& n,
-              TimeOfImpact& toi) {
+void complete(const SphereAndPlane& pair, const QuadraticGap& gap, const Window& window,
+              const Vector3& n, TimeOfImpact& toi) {
   Vector3 centre, origin;
   double height = 0.0;
   double back = ulp(toi.t_lo);
@@ -188,8 +189,7 @@ void complete(const SphereAndPlane& pair, const Window& window, const Vector3& n
     toi.t_lo = std::max(0.0, toi.t_lo - back);
     back *= 2.0;
   }
-  const double reach = pair.sphere.radius + (pair.motion.error_radius + pair.plane.error_radius);
-  toi.gap = std::max(0.0, height - reach);
+  toi.gap = std::max(0.0, gap(toi.t_lo) - gap.error(toi.t_lo));
   toi.normal = -n;
   toi.witness_a = centre - n * pair.sphere.radius;
   toi.witness_b = centre - n * height;
@@ -212,7 +212,7 @@ std::optional<TimeOfImpact> sphere_plane_impact(const MovingShape& a, const Movi
   const double touch = touch_band(pair->motion, pair->plane, pair->sphere.radius);
   TimeOfImpact toi = answer(first_descent(gap, touch), window.duration, 1);
   if (toi.status != ToiStatus::separated) {
-    complete(*pair, window, n, toi);
+    complete(*pair, gap, window, n, toi);
   }
   return toi;
 }

@@ -1,5 +1,6 @@
 #include "ccd/pair_motion.hpp"
 
+#include "ccd/rotation_matrix.hpp"
 #include "ccd/roundoff.hpp"
 
 #include <algorithm>
@@ -157,7 +158,7 @@ PairMotion::PairMotion(const MovingShape& a, const MovingShape& b, const Window&
 }
 
 void PairMotion::orient(const Motion& motion, double s, bool turns, Matrix3& R, Vector3& w) const {
-  R = motion.orientation(s).toRotationMatrix();
+  R = rotation_matrix(motion.orientation(s));
   if (!turns) {
     w.setZero();
   } else if (motion.rotation == RotationKind::polynomial) {

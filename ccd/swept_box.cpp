@@ -1,6 +1,7 @@
 #include "ccd/swept_box.hpp"
 
 #include "ccd/relative_boxes.hpp"
+#include "ccd/rotation_matrix.hpp"
 #include "ccd/roundoff.hpp"
 
 #include <algorithm>
@@ -116,12 +117,12 @@ OrientedBox swept_box(const Shape& shape, const Motion& motion, double s0, doubl
   const Vector3 displacement = motion.position(s1) - motion.position(s0);
   const double length = displacement.norm();
   if (!(length > 0.0)) {
-    return swept_box(shape, motion, s0, s1, motion.orientation(s0).toRotationMatrix());
+    return swept_box(shape, motion, s0, s1, rotation_matrix(motion.orientation(s0)));
   }
   Matrix3 axes;
   axes.col(0) = displacement / length;
   // The second axis as near to an axis of the body as it can be.
-  const Matrix3 body = motion.orientation(s0).toRotationMatrix();
+  const Matrix3 body = rotation_matrix(motion.orientation(s0));
   int least = 0;
   (body.transpose() * axes.col(0)).cwiseAbs().minCoeff(&least);
   const Vector3 second = body.col(least) - axes.col(0) * axes.col(0).dot(body.col(least));

@@ -1,0 +1,191 @@
+#pragma once
+
+#include "core/contact_detector.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+/// An independent answer to "how far apart are they at t": everything in long double, from the
+/// definition of the motions, by the textbook test with normalised axes. Nothing of ccd is used.
+namespace kairos::reference {
+
+using Real = long double;
+using Vec = Eigen::Matrix<Real, 3, 1>;
+using Mat = Eigen::Matrix<Real, 3, 3>;
+
+inline Vec position(const Motion& motion, Real s) {
+  Vec sum = Vec::Zero();
+  for (int k = motion.position.degree(); k >= 0; --k) {
+    sum = sum * s + motion.position[k].cast<Real>();
+  }
+  return sum;
+}
+
+/// p_b - p_a; at equal times the coefficients are subtracted first, which is exact for doubles of
+/// like size, however far from the origin.
+inline Vec relative_position(const Motion& a, Real s_a, const Motion& b, Real s_b) {
+  if (s_a != s_b) {
+    return position(b, s_b) - position(a, s_a);
+  }
+  Vec sum = Vec::Zero();
+  for (int k = std::max(a.position.degree(), b.position.degree()); k >= 0; --k) {
+    Vec difference = Vec::Zero();
+    if (k <= b.position.degree()) {
+      difference = b.position[k].cast<Real>();
+    }
+    if (k <= a.position.degree()) {
+      difference -= a.position[k].cast<Real>();
+    }
+    sum = sum * s_a + difference;
+  }
+  return sum;
+}
+
+inline Mat orientation(const Motion& motion, Real s) {
+  using Q = Eigen::Quaternion<Real>;
+  const auto& c = motion.quaternion[0];
+  Q q(c[0], c[1], c[2], c[3]);
+  if (motion.rotation == RotationKind::polynomial) {
+    Eigen::Matrix<Real, 4, 1> sum = Eigen::Matrix<Real, 4, 1>::Zero();
+    for (int k = motion.quaternion.degree(); k >= 0; --k) {
+      sum = sum * s + motion.quaternion[k].cast<Real>();
+    }
+    q = Q(sum[0], sum[1], sum[2], sum[3]);
+  } else if (motion.rotation == RotationKind::constant_rate) {
+    const Vec w = motion.angular_velocity[0].cast<Real>();
+    const Real rate = w.norm();
+    if (rate > 0) {
+      const Real half = rate * s / 2;
+      const Vec axis = w * (std::sin(half) / rate);
+      q = Q(std::cos(half), axis.x(), axis.y(), axis.z()) * q;
+    }
+  }
+  q.normalize();
+  return q.toRotationMatrix();
+}
+
+/// Signed separation: positive exactly when apart (for boxes, the greatest over the 15 axes, which
+/// is between 1/sqrt(3) of the distance and the distance).
+inline Real separation(const MovingShape& a, Real s_a, const MovingShape& b, Real s_b) {
+  if (a.shape.index() > b.shape.index()) {
+    return separation(b, s_b, a, s_a);
+  }
+  const Vec d = relative_position(a.motion, s_a, b.motion, s_b);
+  const Real errors = Real(a.motion.error_radius) + b.motion.error_radius;
+  const auto* sphere_a = std::get_if<Sphere>(&a.shape);
+  if (const auto* sphere_b = std::get_if<Sphere>(&b.shape)) {
+    return d.norm() - sphere_a->radius - sphere_b->radius - errors;
+  }
+  const Mat R_b = orientation(b.motion, s_b);
+  if (std::holds_alternative<HalfSpace>(b.shape)) {
+    const Vec n = R_b.col(1);
+    if (sphere_a != nullptr) {
+      return -n.dot(d) - sphere_a->radius - errors;
+    }
+    const Mat R_a = orientation(a.motion, s_a);
+    const Vec half = std::get<Box>(a.shape).half_extents.cast<Real>();
+    return -n.dot(d) - half.dot((R_a.transpose() * n).cwiseAbs()) - errors;
+  }
+  const Vec half_b = std::get<Box>(b.shape).half_extents.cast<Real>();
+  if (sphere_a != nullptr) {
+    const Vec c = -(R_b.transpose() * d);
+    const Vec out = (c.cwiseAbs() - half_b).cwiseMax(Real(0));
+    const Real distance = out.norm();
+    if (distance > 0) {
+      return distance - sphere_a->radius - errors;
+    }
+    return (c.cwiseAbs() - half_b).maxCoeff() - sphere_a->radius - errors;
+  }
+  const Mat R_a = orientation(a.motion, s_a);
+  const Vec half_a = std::get<Box>(a.shape).half_extents.cast<Real>();
+  Real best = -std::numeric_limits<Real>::infinity();
+  const auto along = [&](const Vec& n) {
+    best = std::max(best, std::abs(n.dot(d)) - half_a.dot((R_a.transpose() * n).cwiseAbs()) -
+                              half_b.dot((R_b.transpose() * n).cwiseAbs()));
+  };
+  for (int i = 0; i < 3; ++i) {
+    along(R_a.col(i));
+    along(R_b.col(i));
+    for (int j = 0; j < 3; ++j) {
+      const Vec n = R_a.col(i).cross(R_b.col(j));
+      // Below 1e-12 the cross product is noise in long double as well; any direction is a valid
+      // axis, so leaving it out can only make the separation smaller by 1e-12 of the size.
+      if (n.norm() > 1e-12L) {
+        along(n.normalized());
+      }
+    }
+  }
+  return best - errors;
+}
+
+/// Counter-based random numbers: the n-th draw of a seed is a hash of both (SplitMix64).
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15ull) {}
+  std::uint64_t bits() {
+    std::uint64_t z = (state_ += 0x9E3779B97F4A7C15ull);
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
+    return z ^ (z >> 31);
+  }
+  double uniform(double low, double high) {
+    return low + (high - low) * static_cast<double>(bits() >> 11) * 0x1p-53;
+  }
+  double log_uniform(double low, double high) {
+    return std::exp(uniform(std::log(low), std::log(high)));
+  }
+  int below(int n) { return static_cast<int>(bits() % static_cast<std::uint64_t>(n)); }
+  Vector3 vector(double size) {
+    return {uniform(-size, size), uniform(-size, size), uniform(-size, size)};
+  }
+  Vector3 direction() {
+    while (true) {
+      const Vector3 x = vector(1.0);
+      const double n = x.norm();
+      if (n > 0.1 && n < 1.0) {
+        return x / n;
+      }
+    }
+  }
+  Quaternion orientation() {
+    const Vector3 axis = direction();
+    const double half = uniform(0.0, 3.14159);
+    return Quaternion(std::cos(half), std::sin(half) * axis.x(), std::sin(half) * axis.y(),
+                      std::sin(half) * axis.z())
+        .normalized();
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// Least separation over [t0, t1]: dense samples, and golden-section around the lowest of them.
+template <typename F>
+Real least(const F& separation_at, Real t0, Real t1, int samples) {
+  int lowest = 0;
+  Real value = std::numeric_limits<Real>::infinity();
+  const Real step = (t1 - t0) / samples;
+  for (int i = 0; i <= samples; ++i) {
+    const Real x = separation_at(t0 + step * i);
+    if (x < value) {
+      value = x;
+      lowest = i;
+    }
+  }
+  Real low = t0 + step * std::max(0, lowest - 1);
+  Real high = t0 + step * std::min(samples, lowest + 1);
+  constexpr Real golden = 0.6180339887498948482L;
+  for (int i = 0; i < 60; ++i) {
+    const Real m1 = high - golden * (high - low);
+    const Real m2 = low + golden * (high - low);
+    const Real f1 = separation_at(m1);
+    const Real f2 = separation_at(m2);
+    value = std::min({value, f1, f2});
+    (f1 < f2 ? high : low) = f1 < f2 ? m2 : m1;
+  }
+  return value;
+}
+
+}  // namespace kairos::reference
