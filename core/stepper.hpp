@@ -20,6 +20,8 @@ struct StepperInfo {
   bool controlled = false;   ///< chooses its own step within the one asked for
   std::string_view library;  ///< "kairos", "GSL", "SUNDIALS"
   std::string_view source;   ///< citation key of paper/references.bib
+  /// Chooses its order too: `order` is the highest, and it takes no steps of fixed length.
+  bool variable_order = false;
 };
 
 struct StepResult {

@@ -3,6 +3,9 @@
 #include "integrators/closed_form.hpp"
 #include "integrators/dormand_prince.hpp"
 #include "integrators/euler.hpp"
+#ifdef KAIROS_WITH_GSL
+#include "integrators/gsl/gsl_steppers.hpp"
+#endif
 #include "integrators/lie_group.hpp"
 #include "integrators/runge_kutta_4.hpp"
 #include "integrators/splitting.hpp"
@@ -23,6 +26,13 @@ std::span<const CatalogueEntry> catalogue() {
       {rkmk4_info, make_rkmk4},
       {free_top_splitting_info, make_free_top_splitting},
       {closed_form_info, make_closed_form},
+#ifdef KAIROS_WITH_GSL
+      {gsl_rkf45_info, make_gsl_rkf45},
+      {gsl_rkck_info, make_gsl_rkck},
+      {gsl_rk8pd_info, make_gsl_rk8pd},
+      {gsl_msadams_info, make_gsl_msadams},
+      {gsl_bsimp_info, make_gsl_bsimp},
+#endif
   };
   return entries;
 }

@@ -47,32 +47,27 @@ class DormandPrince final : public OdeStepper {
       k.assign(ode_.size(), 0.0);
     }
     stage_.assign(ode_.size(), 0.0);
-    next_step_ = 0.0;
+    control_.forget();
     h_ = 0.0;
   }
 
   StepResult step(const Island& island, Instant t, double h, std::span<BodyState> states) override {
     const HermiteMotion::Node first = begin_step(island, t, states);
     std::copy_n(first.rate, ode_.size(), k_[0].begin());
-    if (control_.active() && next_step_ == 0.0) {
-      next_step_ = initial_step(first, h);
+    if (!control_.has_proposal()) {
+      control_.propose_first([this](double s, const double* y, double* dy) { ode_.rhs(s, y, dy); },
+                             first.y, first.rate, h, stage_, k_[1]);
     }
-    const double proposed = control_.active() ? next_step_ : h;
-    bool shrunk = false;
-    for (double trial = first_trial(proposed, h); trial >= least_fraction * h;) {
+    for (double trial = control_.first_trial(h); trial > 0.0;) {
       const HermiteMotion::Node last = attempt(first, trial);
       const double error = control_.active() ? largest_error(first.y, last.y, trial) : 0.0;
-      const double factor = control_.factor(error);
       if (error <= 1.0) {
-        // A step that was cut to what was asked for does not make the next one shorter.
-        next_step_ = shrunk ? trial * std::min(factor, 1.0)
-                            : std::max(trial * factor, trial < proposed ? proposed : 0.0);
+        control_.accept(trial, error);
         h_ = trial;
         end_step(states);
         return {.advanced = trial, .error = error, .ok = true, .reason = {}};
       }
-      trial *= std::min(factor, 0.9);
-      shrunk = true;
+      trial = control_.shorter(trial, error);
     }
     return {.advanced = 0.0,
             .error = 0.0,
@@ -96,33 +91,6 @@ class DormandPrince final : public OdeStepper {
   }
 
  private:
-  static constexpr double least_fraction = 1e-14;
-
-  // As long as the control allows; rather two halves than a whole and a sliver.
-  static double first_trial(double proposed, double h) {
-    return proposed >= h ? h : std::min(proposed, 0.5 * h);
-  }
-
-  // From the sizes of y' and, by an Euler step, y'' [Hairer1993, II.4].
-  double initial_step(const HermiteMotion::Node& first, double h) {
-    double d0 = 0.0, d1 = 0.0, d2 = 0.0;
-    for (std::size_t n = 0; n < ode_.size(); ++n) {
-      d0 = std::max(d0, control_.scaled(first.y[n], first.y[n], 0.0));
-      d1 = std::max(d1, control_.scaled(first.rate[n], first.y[n], 0.0));
-    }
-    const double guess = std::min(h, d0 > 0.0 && d1 > 0.0 ? 0.01 * d0 / d1 : 1e-6 * h);
-    for (std::size_t n = 0; n < ode_.size(); ++n) {
-      stage_[n] = first.y[n] + guess * first.rate[n];
-    }
-    ode_.rhs(guess, stage_.data(), k_[1].data());
-    for (std::size_t n = 0; n < ode_.size(); ++n) {
-      d2 = std::max(d2, control_.scaled((k_[1][n] - first.rate[n]) / guess, first.y[n], 0.0));
-    }
-    const double steepest = std::max(d1, d2);
-    const double from_order = steepest > 0.0 ? std::pow(0.01 / steepest, 0.2) : h;
-    return std::min({100.0 * guess, from_order, h});
-  }
-
   HermiteMotion::Node attempt(const HermiteMotion::Node& first, double h) {
     for (std::size_t stage = 1; stage + 1 < stages; ++stage) {
       combine(first.y, h, stage, stage_.data());
@@ -155,15 +123,11 @@ class DormandPrince final : public OdeStepper {
     return sum;
   }
 
-  [[nodiscard]] double largest_error(const double* y0, const double* y1, double h) const {
-    double largest = 0.0;
+  [[nodiscard]] double largest_error(const double* y0, const double* y1, double h) {
     for (std::size_t n = 0; n < ode_.size(); ++n) {
-      const double error = control_.scaled(h * weighted(error_weights, n), y0[n], y1[n]);
-      if (!(error <= largest)) {
-        largest = error;  // also when it is not a number
-      }
+      stage_[n] = h * weighted(error_weights, n);
     }
-    return std::isfinite(largest) ? largest : std::numeric_limits<double>::infinity();
+    return control_.largest(stage_, y0, y1);
   }
 
   // y(theta) = r1 + theta (r2 + (1 - theta) (r3 + theta (r4 + (1 - theta) r5))), theta = s / h
@@ -192,7 +156,6 @@ class DormandPrince final : public OdeStepper {
   std::array<std::vector<double>, stages> k_;
   std::vector<double> stage_;
   std::vector<char> rotates_;
-  double next_step_ = 0.0;  ///< that the control proposes, s; 0: not known yet
   double h_ = 0.0;
 };
 

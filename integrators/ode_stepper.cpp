@@ -19,7 +19,8 @@ void OdeStepper::restart(const Island& /*island*/, Instant /*t*/,
 
 HermiteMotion::Node OdeStepper::begin_step(const Island& island, Instant t,
                                            std::span<const BodyState> states) {
-  constant_acceleration_ = island.constant_acceleration();
+  // Every Runge-Kutta method of order 2 or more is exact there: its motion is the parabola.
+  constant_acceleration_ = island.constant_acceleration() && !info().variable_order;
   for (std::size_t i = 0; i < states.size(); ++i) {
     orientations_[i] = states[i].pose.orientation;
   }

@@ -18,7 +18,8 @@ class OdeStepper : public Stepper {
   void dense_output(std::span<Motion> motions) const override;
   bool replay(const Island& island, double s, std::span<const BodyState> before,
               std::span<ReplayedStep> after) const override {
-    return replay_parabola(island, s, before, after);
+    // What a method of variable order does to a parabola depends on its history.
+    return !info().variable_order && replay_parabola(island, s, before, after);
   }
   [[nodiscard]] std::int64_t evaluations() const override { return ode_.evaluations(); }
 

@@ -84,14 +84,20 @@ void check_motion(const StepperInfo& info, const Island& island, const BodyState
   CHECK(motion.position[0] == before.pose.position);
   CHECK(motion.velocity[0] == before.twist.linear);
   CHECK(motion.error_radius >= 0.0);
-  // At its end, roundoff: k eps of the largest terms of the polynomial.
-  const double position_scale = before.pose.position.norm() + after.pose.position.norm();
-  const double velocity_scale =
-      before.twist.linear.norm() + after.twist.linear.norm() + motion.acceleration(h).norm() * h;
+  // At its end, roundoff: Horner's rule rounds in proportion to the sum of its terms' sizes.
+  const auto scale_of = [h](const Polynomial<3>& p) {
+    double sum = 0.0;
+    for (int k = p.degree(); k >= 0; --k) {
+      sum = sum * h + p[k].norm();
+    }
+    return sum;
+  };
+  const double position_scale = scale_of(motion.position) + after.pose.position.norm();
+  const double velocity_scale = scale_of(motion.velocity) + after.twist.linear.norm();
   const Pose end = motion.pose(h);
   const Twist twist = motion.twist(h);
   CHECK((end.position - after.pose.position).norm() <= 32.0 * eps * position_scale);
-  CHECK((twist.linear - after.twist.linear).norm() <= 64.0 * eps * velocity_scale);
+  CHECK((twist.linear - after.twist.linear).norm() <= 32.0 * eps * velocity_scale);
   const double turned = (end.orientation.conjugate() * after.pose.orientation).vec().norm();
   CHECK(turned <= 64.0 * eps + motion.error_radius);
   CHECK(std::abs(after.pose.orientation.norm() - 1.0) <= 8.0 * eps);
@@ -100,8 +106,8 @@ void check_motion(const StepperInfo& info, const Island& island, const BodyState
     CHECK(after.pose.orientation.coeffs() == before.pose.orientation.coeffs());
   } else if (info.name != "thesis-euler" && info.name != "explicit-euler") {
     // The two draw straight lines with jumps of velocity at their ends.
-    const double scale = before.twist.angular.norm() + after.twist.angular.norm();
-    CHECK((twist.angular - after.twist.angular).norm() <= 64.0 * eps * scale);
+    const double scale = scale_of(motion.angular_velocity) + after.twist.angular.norm();
+    CHECK((twist.angular - after.twist.angular).norm() <= 32.0 * eps * scale);
   }
 }
 
@@ -127,8 +133,8 @@ TEST_CASE("The catalogue names each stepper once and tells what it tells") {
     const StepperInfo info = entry.make({})->info();
     CHECK(info.name == entry.info.name);
     CHECK(info.order == entry.info.order);
-    CHECK(info.position_order >= info.order);
-    CHECK(info.velocity_order >= info.order);
+    CHECK((info.variable_order || info.position_order >= info.order));
+    CHECK((info.variable_order || info.velocity_order >= info.order));
     CHECK(!info.library.empty());
     CHECK(!info.source.empty());
     CHECK(entry.make({})->refuses(falling_bodies(3)).empty());
@@ -164,7 +170,8 @@ TEST_CASE("Steps may be tiny: nothing overflows and motions stay finite") {
       CAPTURE(h);
       CHECK(motions[0].pose(0.5 * h).position.allFinite());
       CHECK(motions[0].twist(0.5 * h).linear.allFinite());
-      CHECK((motions[0].pose(h).position - problem.initial.pose.position).norm() <= 2.0 * h);
+      CHECK((motions[0].pose(h).position - problem.initial.pose.position).norm() <=
+            2.0 * h + 32.0 * eps);
       CHECK((motions[0].twist(h).linear - problem.initial.twist.linear).norm() <=
             10.0 * h + 32.0 * eps);
     }
@@ -239,7 +246,10 @@ TEST_CASE("Steps and dense output do not allocate") {
 
 TEST_CASE("A step replayed in double-double differs from the computed one by roundoff") {
   const Island island = falling_bodies(2);
-  for_each_stepper(island, [&](const CatalogueEntry&, Stepper& stepper) {
+  for_each_stepper(island, [&](const CatalogueEntry& entry, Stepper& stepper) {
+    if (entry.info.variable_order) {
+      return;
+    }
     std::vector<BodyState> states = thrown_bodies(2);
     std::vector<ReplayedStep> replayed(2);
     stepper.start(island, Instant{}, states);

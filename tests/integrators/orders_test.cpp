@@ -67,7 +67,7 @@ Errors run(const CatalogueEntry& entry, const Problem& problem, int steps) {
 }
 
 /// Steps at which a method of some order is in its asymptotic regime and above roundoff.
-int first_steps(int order) { return order <= 2 ? 256 : order <= 4 ? 48 : order == 5 ? 20 : 12; }
+int first_steps(int order) { return order <= 2 ? 256 : order <= 4 ? 48 : order == 5 ? 28 : 12; }
 
 /// Errors must fall as h^order: from C h^order, calibrated at the largest step, by 2^order with
 /// each halving, down to roundoff. The slope over all halvings is within 0.1 of the order up to
@@ -119,7 +119,7 @@ void check_orders(const CatalogueEntry& entry, const Problem& problem) {
 
 TEST_CASE("Every stepper has its declared order, in its steps and in its dense output") {
   for (const CatalogueEntry& entry : catalogue()) {
-    if (entry.info.order == 0) {
+    if (entry.info.order == 0 || entry.info.variable_order) {
       continue;
     }
     for (const Problem* problem : {&kepler_top(), &free_top(), &shaken_spring()}) {

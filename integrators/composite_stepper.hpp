@@ -1,0 +1,39 @@
+#pragma once
+
+#include "integrators/ode_stepper.hpp"
+
+namespace kairos::integrators {
+
+/// A library's solver behind the port. One step is n - 1 steps of the solver, each at most an
+/// (n - 1)th of what was asked for, and its n ends are the nodes of a Hermite dense output: of
+/// order 2n, which no solver's own interpolant offers above order 5.
+class CompositeStepper : public OdeStepper {
+ public:
+  void start(const Island& island, Instant t, std::span<const BodyState> states) override;
+  StepResult step(const Island& island, Instant t, double h, std::span<BodyState> states) final;
+
+ protected:
+  struct Substep {
+    double advanced = 0.0;  ///< s; 0: failed
+    double error = 0.0;     ///< in units of the tolerance
+  };
+  /// Nodes for a dense output of some order.
+  static constexpr std::size_t nodes_for(int order) {
+    return static_cast<std::size_t>((order + 1) / 2 < 2 ? 2 : (order + 1) / 2);
+  }
+
+  /// `failure`: the reason that a failed step gives.
+  CompositeStepper(std::size_t nodes, std::string_view failure)
+      : OdeStepper(nodes), substeps_(nodes - 1), failure_(failure) {}
+
+  /// One step of the solver from local time s, where y has the rate `rate`, by at most h; y1 is
+  /// written. Its right-hand side is `ode_.rhs`, in the local time of the composite step.
+  virtual Substep substep(double s, double h, const double* y, const double* rate, double* y1) = 0;
+
+ private:
+  std::size_t substeps_;
+  std::string_view failure_;
+  std::vector<double> y_;
+};
+
+}  // namespace kairos::integrators
