@@ -133,14 +133,15 @@ double lift_off_time(const Motion& surface_motion, const Vector3& normal, double
 Motion ride(const Motion& along_surface, const Motion& surface_motion, const Vector3& normal) {
   Motion motion = along_surface;
   motion.duration = std::min(motion.duration, surface_motion.duration);
-  const auto add = [&](Polynomial<3>& to, const Polynomial<3>& from, int first) {
+  const auto follow = [&](Polynomial<3>& to, const Polynomial<3>& from, int first) {
     to.resize(std::max(to.degree(), from.degree()));
-    for (int k = first; k <= from.degree(); ++k) {
-      to[k] += normal * normal.dot(Vector3(from[k]));
+    for (int k = first; k <= to.degree(); ++k) {
+      const double carried = k <= from.degree() ? normal.dot(Vector3(from[k])) : 0.0;
+      to[k] += normal * (carried - normal.dot(Vector3(to[k])));
     }
   };
-  add(motion.position, surface_motion.position, 1);  // starts where the ball is, bit for bit
-  add(motion.velocity, surface_motion.velocity, 0);
+  follow(motion.position, surface_motion.position, 1);  // starts where the ball is, bit for bit
+  follow(motion.velocity, surface_motion.velocity, 0);
   motion.error_radius = std::max(motion.error_radius, surface_motion.error_radius);
   return motion;
 }

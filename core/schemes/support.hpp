@@ -33,8 +33,8 @@ struct Support {
 [[nodiscard]] double lift_off_time(const Motion& surface_motion, const Vector3& normal, double mass,
                                    const Vector3& force);
 
-/// Lets a motion along a surface ride with it: adds the surface's displacement and velocity along
-/// the normal. Both motions start together; the surface does not turn.
+/// Lets a motion along a surface ride with it: along the normal it moves as the surface does. Both
+/// motions start together; the surface does not turn.
 [[nodiscard]] Motion ride(const Motion& along, const Motion& surface_motion, const Vector3& normal);
 
 /// Takes from the forces on a ball what presses it against the surface. To be the last force of
