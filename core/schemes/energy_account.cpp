@@ -31,39 +31,11 @@ double spin_energy(const BodyInertia& inertia, const BodyState& s) {
   return 0.5 * w_B.dot(inertia.principal.cwiseProduct(w_B));
 }
 
-std::vector<BodyState> gather(const Island& island, std::span<const BodyState> bodies) {
-  std::vector<BodyState> out;
-  out.reserve(island.bodies.size());
+void gather(const Island& island, std::span<const BodyState> bodies, std::vector<BodyState>& out) {
+  out.clear();
   for (const BodyIndex i : island.bodies) {
     out.push_back(bodies[i]);
   }
-  return out;
-}
-
-/// Integral of power over the motions, for a force without a potential.
-double work_along(const Force& force, std::span<const Motion> motions, Instant start,
-                  double duration) {
-  std::vector<BodyState> states(motions.size());
-  std::vector<Wrench> wrenches(motions.size());
-  double work = 0.0;
-  for (const Node& node : nodes) {
-    const Instant t = start + node.abscissa * duration;
-    for (std::size_t k = 0; k < motions.size(); ++k) {
-      const double s = t - motions[k].start;
-      states[k] = {motions[k].pose(s), motions[k].twist(s)};
-      wrenches[k] = {};
-    }
-    force.add(t, states, wrenches);
-    for (std::size_t k = 0; k < motions.size(); ++k) {
-      // Along the Motion: the path's own velocity, which a dense output may tell apart from
-      // `twist`.
-      const Vector3 path_velocity = motions[k].position.derivative(t - motions[k].start);
-      work +=
-          node.weight * duration *
-          (wrenches[k].force.dot(path_velocity) + wrenches[k].torque.dot(states[k].twist.angular));
-    }
-  }
-  return work;
 }
 
 }  // namespace
@@ -127,6 +99,30 @@ double EnergyAccount::surplus(const Leg& leg) {
   return surplus;
 }
 
+/// Integral of power over the motions, for a force without a potential.
+double EnergyAccount::work_along(const Force& force, std::span<const Motion> motions, Instant start,
+                                 double duration) {
+  double work = 0.0;
+  for (const Node& node : nodes) {
+    const Instant t = start + node.abscissa * duration;
+    along_.clear();
+    for (const Motion& motion : motions) {
+      const double s = t - motion.start;
+      along_.push_back({motion.pose(s), motion.twist(s)});
+    }
+    wrenches_.assign(motions.size(), Wrench{});
+    force.add(t, along_, wrenches_);
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+      // The path's own velocity, which a dense output may tell apart from `twist`.
+      const Vector3 path_velocity = motions[k].position.derivative(t - motions[k].start);
+      work += node.weight * duration *
+              (wrenches_[k].force.dot(path_velocity) +
+               wrenches_[k].torque.dot(along_[k].twist.angular));
+    }
+  }
+  return work;
+}
+
 void EnergyAccount::leg(const Leg& leg) {
   const double truncation = surplus(leg);
   if (!leg.exact) {
@@ -137,15 +133,16 @@ void EnergyAccount::leg(const Leg& leg) {
 void EnergyAccount::leg(const Leg& leg, std::span<const Motion> motions, Instant start,
                         double duration) {
   double truncation = surplus(leg);
-  const std::vector<BodyState> from = gather(leg.island, leg.from);
-  const std::vector<BodyState> to = gather(leg.island, leg.to);
+  gather(leg.island, leg.from, from_);
+  gather(leg.island, leg.to, to_);
   for (const Force* force : leg.island.forces) {
     if (force->conservative()) {
-      const double work = force->potential(start, from) - force->potential(start + duration, to);
+      const double work = force->potential(start, from_) - force->potential(start + duration, to_);
       ledger_.exchange(work);
       truncation -= work;
     } else {
-      const double stored = force->potential(start + duration, to) - force->potential(start, from);
+      const double stored =
+          force->potential(start + duration, to_) - force->potential(start, from_);
       const double work = work_along(*force, motions, start, duration);
       ledger_.add(EnergyLine::field_work, work + stored);
       truncation -= work;
@@ -172,7 +169,7 @@ double EnergyAccount::kinetic(std::span<const BodyState> bodies) const {
   return sum.value();
 }
 
-double EnergyAccount::potential(Instant t, std::span<const BodyState> bodies) const {
+double EnergyAccount::potential(Instant t, std::span<const BodyState> bodies) {
   CompensatedSum sum;
   for (const BodyIndex i : free_by_name_) {
     sum.add(model_.gravity_potential(i, bodies[i].pose.position));
@@ -186,11 +183,11 @@ double EnergyAccount::potential(Instant t, std::span<const BodyState> bodies) co
 }
 
 double EnergyAccount::island_potential(const Island& island, Instant t,
-                                       std::span<const BodyState> bodies) const {
-  const std::vector<BodyState> states = gather(island, bodies);
+                                       std::span<const BodyState> bodies) {
+  gather(island, bodies, from_);
   double sum = 0.0;
   for (const Force* force : island.forces) {
-    sum += force->potential(t, states);
+    sum += force->potential(t, from_);
   }
   return sum;
 }

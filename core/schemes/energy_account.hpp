@@ -59,13 +59,18 @@ class EnergyAccount {
  private:
   /// Kinetic energy gained minus work of gravity and `other_force`, J; books the latter.
   double surplus(const Leg& leg);
+  [[nodiscard]] double work_along(const Force& force, std::span<const Motion> motions,
+                                  Instant start, double duration);
   [[nodiscard]] double kinetic(std::span<const BodyState> bodies) const;
-  [[nodiscard]] double potential(Instant t, std::span<const BodyState> bodies) const;
+  [[nodiscard]] double potential(Instant t, std::span<const BodyState> bodies);
   [[nodiscard]] double island_potential(const Island& island, Instant t,
-                                        std::span<const BodyState> bodies) const;
+                                        std::span<const BodyState> bodies);
 
   const Model& model_;
   EnergyLedger& ledger_;
+  // Scratch, so that booking does not allocate.
+  std::vector<BodyState> from_, to_, along_;
+  std::vector<Wrench> wrenches_;
   std::vector<BodyIndex> free_by_name_;  ///< sums must not depend on the order in the file
 };
 

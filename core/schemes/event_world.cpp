@@ -163,8 +163,7 @@ void EventWorld::next_segment(Flow& flow, Instant t) {
     return;  // the run ends here
   }
   // A closed form has no end of its own.
-  const double h =
-      flow.exact ? std::numeric_limits<double>::infinity() : std::min(left, longest);
+  const double h = flow.exact ? std::numeric_limits<double>::infinity() : std::min(left, longest);
   ++cost_.steps;
   const StepResult step = flow.stepper->step(flow.island, t, h, flow.states);
   if (!step.ok || !(step.advanced > 0.0)) {

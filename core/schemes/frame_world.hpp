@@ -69,11 +69,12 @@ class FrameWorld {
     Island island;
     std::unique_ptr<Stepper> stepper;
     bool exact = false;
-    bool jumped = false;              ///< restart before the next step
-    std::vector<BodyState> states{};  ///< at the end of what was computed
-    std::vector<Motion> motions{};    ///< dense output of the last step
-    double last_step = 0.0;           ///< s
-    std::vector<BodyState> booked{};  ///< where the ledger is
+    bool jumped = false;               ///< restart before the next step
+    std::vector<BodyState> states{};   ///< at the end of what was computed
+    std::vector<Motion> motions{};     ///< dense output of the last step
+    double last_step = 0.0;            ///< s
+    std::vector<BodyState> booked{};   ///< where the ledger is
+    std::vector<BodyState> reached{};  ///< scratch: the end of a leg
     std::vector<ReplayedStep> replayed{};
     double booked_until = 0.0;  ///< of the proposal, s
   };

@@ -93,7 +93,8 @@ void FrameWorld::accept(double s) {
 /// The ledger follows an island along its path up to `until` of the proposal.
 void FrameWorld::book_path(Mover& mover, double until) {
   const BodyIndex first = mover.island.bodies.front();
-  std::vector<BodyState> to(mover.states.size());
+  std::vector<BodyState>& to = mover.reached;
+  to.resize(mover.states.size());
   while (mover.booked_until < until) {
     const double from = mover.booked_until;
     double end = from + common_stretch(first, first, from, until);
