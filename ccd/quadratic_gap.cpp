@@ -1,7 +1,5 @@
 #include "ccd/quadratic_gap.hpp"
 
-#include "ccd/roundoff.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -56,20 +54,6 @@ FirstDescent descent_of_concave(const QuadraticGap& gap, bool in_touch) {
 }
 
 }  // namespace
-
-double QuadraticGap::operator()(double t) const {
-  const Exact p1 = two_product(c2, t);
-  const Exact s1 = two_sum(c1, p1.value);
-  const Exact p0 = two_product(s1.value, t);
-  const Exact s0 = two_sum(c0, p0.value);
-  return s0.value + (s0.lost + p0.lost + (s1.lost + p1.lost) * t);
-}
-
-double QuadraticGap::error(double t) const {
-  // The compensated value itself is off by u |value| + 16 u^2 sum |c_k| t^k.
-  const double size = std::abs(c0) + (std::abs(c1) + std::abs(c2) * t) * t;
-  return e0 + (e1 + e2 * t) * t + 16.0 * unit_roundoff * unit_roundoff * size;
-}
 
 FirstDescent first_descent(const QuadraticGap& gap, double touch) {
   if (gap.c0 < -touch) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "ccd/roundoff.hpp"
+
 namespace kairos::ccd {
 
 /// A gap c0 + c1 t + c2 t^2 (m) whose coefficients are known to within e0, e1, e2.
@@ -8,10 +10,20 @@ struct QuadraticGap {
   double e0 = 0.0, e1 = 0.0, e2 = 0.0;
 
   /// Value by compensated Horner: as if in twice the precision, then rounded [Langlois2007].
-  [[nodiscard]] double operator()(double t) const;
+  [[nodiscard]] double operator()(double t) const {
+    const Exact p1 = two_product(c2, t);
+    const Exact s1 = two_sum(c1, p1.value);
+    const Exact p0 = two_product(s1.value, t);
+    const Exact s0 = two_sum(c0, p0.value);
+    return s0.value + (s0.lost + p0.lost + (s1.lost + p1.lost) * t);
+  }
   [[nodiscard]] double rate(double t) const { return c1 + 2.0 * c2 * t; }
   /// Bound of the error of the value at t.
-  [[nodiscard]] double error(double t) const;
+  [[nodiscard]] double error(double t) const {
+    // The compensated value itself is off by u |value| + 16 u^2 sum |c_k| t^k.
+    const double size = std::abs(c0) + (std::abs(c1) + std::abs(c2) * t) * t;
+    return e0 + (e1 + e2 * t) * t + 16.0 * unit_roundoff * unit_roundoff * size;
+  }
 };
 
 /// What the first descent of a gap through zero looks like.

@@ -54,11 +54,11 @@ TimeOfImpact ShapeDetector::time_of_separation(const MovingShape& a, const Movin
   if (both_half_spaces(a.shape, b.shape)) {
     return never(window);
   }
-  if (auto toi = closed_form_separation(a, b, window)) {
-    return *toi;
-  }
-  return in_order(a.shape, b.shape) ? advance_to_separation(a, b, window, tolerance)
-                                    : exchanged(advance_to_separation(b, a, window, tolerance));
+  const auto ordered = [&](const MovingShape& first, const MovingShape& second) {
+    const auto toi = closed_form_separation(first, second, window);
+    return toi ? *toi : advance_to_separation(first, second, window, tolerance);
+  };
+  return in_order(a.shape, b.shape) ? ordered(a, b) : exchanged(ordered(b, a));
 }
 
 bool ShapeDetector::swept_overlap(const MovingShape& a, const MovingShape& b,

@@ -1,0 +1,215 @@
+#include "ccd/sphere_plane.hpp"
+
+#include "ccd/descent_answer.hpp"
+#include "ccd/rotation_matrix.hpp"
+
+#include <cmath>
+
+namespace kairos::ccd {
+namespace {
+
+constexpr double u = unit_roundoff;
+
+/// n . p of a parabola from local time s on, with bounds of the errors.
+struct Projection {
+  double c0 = 0.0, c1 = 0.0, c2 = 0.0;
+  double e0 = 0.0, e1 = 0.0, e2 = 0.0;
+};
+
+/// Along +y exactly (nothing is rounded), or along any n: off by 8 u for n and 3 u for the product.
+struct AlongY {
+  double operator()(const Vector3& x) const { return x[1]; }
+  double error(const Vector3& /*x*/) const { return 0.0; }
+};
+struct Along {
+  const Vector3& n;
+  double operator()(const Vector3& x) const { return n.dot(x); }
+  double error(const Vector3& x) const { return 12.0 * u * x.lpNorm<1>(); }
+};
+
+template <typename Direction>
+Projection project(const Polynomial<3>& p, const Direction& along) {
+  Projection q{along(p[0]), 0.0, 0.0, along.error(p[0])};
+  if (p.degree() > 0) {
+    q.c1 = along(p[1]);
+    q.e1 = along.error(p[1]);
+  }
+  if (p.degree() > 1) {
+    q.c2 = along(p[2]);
+    q.e2 = along.error(p[2]);
+  }
+  return q;
+}
+
+void shift(Projection& q, double s) {
+  if (s == 0.0 || (q.c1 == 0.0 && q.c2 == 0.0)) {
+    return;
+  }
+  const double size = std::abs(s);
+  q.e0 += (q.e1 + q.e2 * size) * size +
+          5.0 * u * (std::abs(q.c0) + (std::abs(q.c1) + std::abs(q.c2) * size) * size);
+  q.e1 += 2.0 * q.e2 * size + 3.0 * u * (std::abs(q.c1) + 2.0 * std::abs(q.c2) * size);
+  q.c0 += (q.c1 + q.c2 * s) * s;
+  q.c1 += 2.0 * q.c2 * s;
+}
+
+/// x - y, and what it may be off by: nothing where y is zero.
+double difference(double x, double y, double& error) {
+  const double d = x - y;
+  error += y == 0.0 ? 0.0 : u * std::abs(d);
+  return d;
+}
+
+/// Height of the sphere above the plane less its reach (radius and error radii). Coefficients are
+/// subtracted before they are projected: far from the origin that loses nothing.
+template <typename Direction>
+QuadraticGap gap_along(const Motion& sphere, double s, const Motion& plane, double s_p,
+                       double reach, const Direction& along) {
+  const Vector3 d = sphere.position[0] - plane.position[0];
+  QuadraticGap gap;
+  if (plane.position.degree() == 0) {
+    Projection a = project(sphere.position, along);
+    a.c0 = along(d);
+    a.e0 = along.error(d) + (along(plane.position[0]) == 0.0 ? 0.0 : u * std::abs(a.c0));
+    shift(a, s);
+    gap = {a.c0, a.c1, a.c2, a.e0, a.e1, a.e2};
+  } else if (s == 0.0 && s_p == 0.0) {
+    Polynomial<3> relative = sphere.position;
+    relative.resize(std::max(relative.degree(), plane.position.degree()));
+    for (int k = 0; k <= plane.position.degree(); ++k) {
+      relative[k] -= plane.position[k];
+    }
+    const Projection r = project(relative, along);
+    const auto rounding = [](const Vector3& x) { return 2.0 * u * x.cwiseAbs().maxCoeff(); };
+    gap = {r.c0, r.c1, r.c2, r.e0 + rounding(d), r.e1, r.e2};
+    if (relative.degree() > 0) {
+      gap.e1 += rounding(relative[1]);
+    }
+    if (relative.degree() > 1) {
+      gap.e2 += rounding(relative[2]);
+    }
+  } else {
+    Projection a = project(sphere.position, along);
+    Projection b = project(plane.position, along);
+    shift(a, s);
+    shift(b, s_p);
+    gap = {0.0, 0.0, 0.0, a.e0 + b.e0, a.e1 + b.e1, a.e2 + b.e2};
+    gap.c0 = difference(a.c0, b.c0, gap.e0);
+    gap.c1 = difference(a.c1, b.c1, gap.e1);
+    gap.c2 = difference(a.c2, b.c2, gap.e2);
+  }
+  gap.c0 = difference(gap.c0, reach, gap.e0);
+  return gap;
+}
+
+/// A sphere and a plane in motion, and the gap between them.
+struct SphereAbovePlane {
+  const Motion& sphere;
+  const Motion& plane;
+  const Window& window;
+  double radius;
+  bool level;  ///< the normal is exactly +y
+  Vector3 n;
+  QuadraticGap gap;
+
+  SphereAbovePlane(const Sphere& shape, const Motion& motion, const Motion& plane_,
+                   const Window& window_)
+      : sphere(motion), plane(plane_), window(window_), radius(shape.radius) {
+    const Vector4& q = plane.quaternion[0];
+    const double s = start_of(sphere, window);
+    const double s_p = start_of(plane, window);
+    const double reach = radius + (sphere.error_radius + plane.error_radius);
+    level = q[1] == 0.0 && q[2] == 0.0 && q[3] == 0.0;
+    if (level) {
+      n = Vector3::UnitY();
+      gap = gap_along(sphere, s, plane, s_p, reach, AlongY{});
+    } else {
+      n = rotation_matrix(Quaternion(q[0], q[1], q[2], q[3])).col(1);
+      gap = gap_along(sphere, s, plane, s_p, reach, Along{n});
+    }
+  }
+
+  [[nodiscard]] double touch() const { return touch_band(sphere, plane, radius); }
+
+  /// Normal and witnesses at `t_lo`, after stepping back, by ulps, until the height of the sphere
+  /// as anyone computes it from the motions is positive as well.
+  void complete(TimeOfImpact& toi) const {
+    Vector3 centre;
+    double height = 0.0;
+    const double first = toi.t_lo;
+    double back = ulp(toi.t_lo);
+    for (int attempt = 0; attempt < 12; ++attempt) {
+      centre = sphere.position(local_time(sphere, window, toi.t_lo));
+      const Vector3 origin = plane.position.degree() == 0
+                                 ? plane.position[0]
+                                 : plane.position(local_time(plane, window, toi.t_lo));
+      height = level ? centre[1] - origin[1] : n.dot(centre - origin);
+      if (height > radius || toi.t_lo == 0.0 || toi.status == ToiStatus::overlapping) {
+        break;
+      }
+      toi.t_lo = std::max(0.0, first - back);
+      back *= 2.0;
+    }
+    toi.gap = std::max(0.0, gap(toi.t_lo) - gap.error(toi.t_lo));
+    toi.normal = -n;
+    toi.witness_a = centre - n * radius;
+    toi.witness_b = centre - n * height;
+  }
+};
+
+const Sphere* sphere_of(const MovingShape& a, const MovingShape& b) {
+  const auto* sphere = std::get_if<Sphere>(&a.shape);
+  return sphere != nullptr && std::holds_alternative<HalfSpace>(b.shape) &&
+                 b.motion.rotation == RotationKind::fixed && a.motion.position.degree() <= 2 &&
+                 b.motion.position.degree() <= 2
+             ? sphere
+             : nullptr;
+}
+
+}  // namespace
+
+std::optional<TimeOfImpact> sphere_plane_impact(const MovingShape& a, const MovingShape& b,
+                                                const Window& window) {
+  const Sphere* sphere = sphere_of(a, b);
+  if (sphere == nullptr) {
+    return std::nullopt;
+  }
+  const SphereAbovePlane pair(*sphere, a.motion, b.motion, window);
+  std::optional<TimeOfImpact> toi =
+      descent_answer(first_descent(pair.gap, pair.touch()), window.duration);
+  if (toi->status != ToiStatus::separated) {
+    pair.complete(*toi);
+  }
+  return toi;
+}
+
+std::optional<TimeOfImpact> sphere_plane_separation(const MovingShape& a, const MovingShape& b,
+                                                    const Window& window) {
+  const Sphere* sphere = sphere_of(a, b);
+  if (sphere == nullptr) {
+    return std::nullopt;
+  }
+  const SphereAbovePlane pair(*sphere, a.motion, b.motion, window);
+  TimeOfImpact toi;
+  toi.normal = -pair.n;
+  if (pair.gap.c0 > pair.touch()) {
+    return toi;
+  }
+  // The first ascent of the gap is the first descent of the depth.
+  const QuadraticGap depth{-pair.gap.c0, -pair.gap.c1, -pair.gap.c2,
+                           pair.gap.e0,  pair.gap.e1,  pair.gap.e2};
+  const FirstDescent ascent = first_descent(depth, pair.touch());
+  toi = descent_answer(ascent, window.duration);
+  toi.normal = -pair.n;
+  if (ascent.kind == Descent::in_touch || ascent.kind == Descent::inside) {
+    toi.status = ToiStatus::impact;
+    toi.t_lo = toi.t_hi = 0.0;  // in touch, and leaving
+  } else if (ascent.kind == Descent::none || ascent.kind == Descent::sliding ||
+             toi.status == ToiStatus::separated) {
+    toi.status = ToiStatus::overlapping;
+    toi.t_lo = toi.t_hi = window.duration;
+  }
+  return toi;
+}
+
+}  // namespace kairos::ccd

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "core/contact_detector.hpp"
+
+#include <optional>
+
+namespace kairos::ccd {
+
+/// Two spheres whose relative motion is uniform: at rest, or in the same gravity. Empty for any
+/// other pair.
+[[nodiscard]] std::optional<TimeOfImpact> sphere_sphere_impact(const MovingShape& a,
+                                                               const MovingShape& b,
+                                                               const Window& window);
+/// When the two part.
+[[nodiscard]] std::optional<TimeOfImpact> sphere_sphere_separation(const MovingShape& a,
+                                                                   const MovingShape& b,
+                                                                   const Window& window);
+
+}  // namespace kairos::ccd
