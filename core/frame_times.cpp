@@ -77,7 +77,7 @@ double parse_duration(std::string_view text, const TextOrigin& origin) {
   const double seconds = numerator && denominator ? *numerator / *denominator / per_second : 0.0;
   if (!(seconds > 0.0 && seconds <= longest_duration) || !denominator || *denominator < 0.0) {
     throw InputError(origin.file, origin.line, origin.key,
-                     fmt::format("\"{}\" is no duration; allowed: seconds > 0 and <= {}, such as "
+                     fmt::format("\"{}\" is no duration; allowed: seconds > 0 and <= {:g}, such as "
                                  "0.02, \"1/60\", \"16ms\", \"250us\"",
                                  text, longest_duration));
   }
@@ -105,7 +105,7 @@ FrameTimes read_frame_csv(const std::string& path) {
     if (!(duration > 0.0 && duration <= longest_duration)) {
       throw InputError(
           path, csv.line(i), "duration",
-          fmt::format("is {}; allowed: a number > 0 and <= {} (s)", duration, longest_duration));
+          fmt::format("is {}; allowed: a number > 0 and <= {:g} (s)", duration, longest_duration));
     }
     frames.durations.push_back(duration);
   }

@@ -275,12 +275,6 @@ void Model::choose_motion() {
   decide(tally.decisions("motion"));
 }
 
-Vector3 Model::given_force(BodyIndex giver, const BodyState& state, BodyIndex receiver) const {
-  const Vector3 force = entity(giver).get_force(body(giver), state);
-  const bool accelerates = scene_.gravity == GravityMode::acceleration;
-  return accelerates ? Vector3(body(receiver).mass * force) : force;
-}
-
 State Model::initial_state() const {
   State state;
   state.reserve(size());

@@ -66,11 +66,6 @@ class Model {
   /// Name of the broad phase that the scene needs.
   [[nodiscard]] std::string_view broad_phase() const { return broad_phase_; }
 
-  /// The force on a free body of being in touch with a giver (a field), N: 6.5, times the body's
-  /// mass where gravity is an acceleration.
-  [[nodiscard]] Vector3 given_force(BodyIndex giver, const BodyState& state,
-                                    BodyIndex receiver) const;
-
   /// Bodies at t = 0; driven bodies where their drive puts them.
   [[nodiscard]] State initial_state() const;
   /// Potential energy of gravity of body i, J (0 at y = 0).

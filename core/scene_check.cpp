@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -89,6 +90,16 @@ void check_forces(const Scene& scene) {
   }
 }
 
+void check_frames(const Scene& scene) {
+  const auto positive = [](double x) { return x > 0.0 && std::isfinite(x); };
+  const auto* listed = std::get_if<ListedFrames>(&scene.frames);
+  const bool all_positive = listed == nullptr || std::all_of(listed->durations.begin(),
+                                                             listed->durations.end(), positive);
+  if (!all_positive || !positive(mean_frame_duration(scene.frames))) {
+    throw InputError(scene.path, 0, "frame", "must be > 0 and finite");
+  }
+}
+
 }  // namespace
 
 void check_scene(const Scene& scene) {
@@ -98,10 +109,7 @@ void check_scene(const Scene& scene) {
   if (scene.bodies.empty()) {
     throw InputError(scene.path, 0, "body", "the scene is empty; needed: at least one body");
   }
-  const double frame = mean_frame_duration(scene.frames);
-  if (!(frame > 0.0) || !std::isfinite(frame)) {
-    throw InputError(scene.path, 0, "frame", "must be > 0 and finite");
-  }
+  check_frames(scene);
   std::set<std::string> names;
   for (const Body& body : scene.bodies) {
     BodyCheck(scene, body).run();

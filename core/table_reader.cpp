@@ -14,9 +14,9 @@ inline namespace core {
 
 std::string Range::text() const {
   const std::string least =
-      above ? fmt::format("a number > {}", lowest) : fmt::format("a number from {}", lowest);
+      above ? fmt::format("a number > {:g}", lowest) : fmt::format("a number from {:g}", lowest);
   const std::string most =
-      above ? fmt::format(" and <= {}", highest) : fmt::format(" to {}", highest);
+      above ? fmt::format(" and <= {:g}", highest) : fmt::format(" to {:g}", highest);
   return least + most + (unit.empty() ? "" : fmt::format(" ({})", unit));
 }
 

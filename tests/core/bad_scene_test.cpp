@@ -1,0 +1,329 @@
+// Every way of writing a scene wrong that we could think of: refused with the line, the key, what
+// is wrong and what is allowed.
+
+#include "core/document.hpp"
+#include "core/error.hpp"
+#include "core/scene.hpp"
+#include "tests/catch.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+using namespace kairos;
+
+namespace {
+
+/// Lines 1 to 3 of a scene that has only a floor.
+const std::string floor_lines =
+    "[[body]]\nname = \"floor\"\nentity = \"wall\"\nshape = \"half-space\"\n";
+/// Lines 1 to 5 of a ball to which a sixth is added.
+const std::string ball_lines =
+    "[[body]]\nname = \"ball\"\nentity = \"ball\"\nradius = 0.5\nmass = 1.0\n";
+const std::string body_lines =
+    "[[body]]\nname = \"box\"\nentity = \"body\"\nhalf_extents = [1, 1, 1]\nmass = 1.0\n";
+const std::string wall_lines =
+    "[[body]]\nname = \"wall\"\nentity = \"wall\"\nhalf_extents = [1, 1, 1]\n";
+const std::string bat_lines =
+    "[[body]]\nname = \"bat\"\nentity = \"bat\"\nhalf_extents = [1, 1, 1]\nmass = 1.0\n";
+
+struct BadScene {
+  std::string text;
+  int line;
+  std::string key;
+  std::string part;  ///< of the reason
+};
+
+void check_refused(const BadScene& bad) {
+  INFO(bad.text);
+  try {
+    (void)parse_scene(bad.text, "bad.toml");
+  } catch (const InputError& error) {
+    INFO(error.what());
+    CHECK(error.file() == "bad.toml");
+    CHECK(error.line() == bad.line);
+    CHECK(error.key() == bad.key);
+    CHECK(error.reason().find(bad.part) != std::string::npos);
+    return;
+  }
+  FAIL("was not refused");
+}
+
+const std::vector<BadScene> top_level = {
+    {"", 0, "body", "missing"},
+    {"body = []", 1, "body", "at least one"},
+    {"body = 3", 1, "body", "a whole number"},
+    {"body = [3]", 1, "body[0]", "a table"},
+    {"[body]\nname = \"x\"", 1, "body", "a table; allowed: an array"},
+    {"durations = 1", 1, "durations", "did you mean \"duration\""},
+    {"xyzzy = 1", 1, "xyzzy", "unknown key; allowed"},
+    {"duration = \"long\"", 1, "duration", "no duration"},
+    {"duration = 0", 1, "duration", "> 0"},
+    {"duration = -1.0", 1, "duration", "is -1"},
+    {"duration = nan", 1, "duration", "is nan"},
+    {"duration = inf", 1, "duration", "is inf"},
+    {"duration = 1e13", 1, "duration", "<= 1"},
+    {"duration = true", 1, "duration", "a truth value"},
+    {"duration = 2020-01-01", 1, "duration", "a date"},
+    {"name = 3", 1, "name", "a string"},
+    {"summary = []", 1, "summary", "a string"},
+    {"frame = 0", 1, "frame", "> 0"},
+    {"frame = -0.1", 1, "frame", "> 0"},
+    {"frame = \"1/0\"", 1, "frame", "no duration"},
+    {"frame = \"-1/60\"", 1, "frame", "no duration"},
+    {"frame = \"-1/-60\"", 1, "frame", "no duration"},
+    {"frame = \"16 parsecs\"", 1, "frame", "no duration"},
+    {"frame = \"\"", 1, "frame", "no duration"},
+    {"frame = \"1e400\"", 1, "frame", "no duration"},
+    {"frame = [1]", 1, "frame", "an array"},
+    {"frame = {}", 1, "frame.mean", "missing"},
+    {"frame = {mean = 0.1, jitter = 1}", 1, "frame.jitter", "0 to 0.999"},
+    {"frame = {mean = 0.1, jitters = 0}", 1, "frame.jitters", "did you mean \"jitter\""},
+    {"frame = {mean = 0.1, spike_probability = 1.5}", 1, "frame.spike_probability", "0 to 1"},
+    {"frame = {mean = 0.1, spike_factor = 0.5}", 1, "frame.spike_factor", "from 1"},
+    {"frame = {mean = 0.1, seed = 1.5}", 1, "frame.seed", "whole number"},
+    {"frame = {mean = 0.1, seed = -1}", 1, "frame.seed", "is -1"},
+    {"frame = {csv = \"x.csv\", mean = 0.1}", 1, "frame.mean", "csv is given too"},
+    {"gravity = \"down\"", 1, "gravity", "acceleration, force"},
+    {"gravity = 9.8", 1, "gravity", "a number; allowed: acceleration"},
+    {"G = -9.8", 1, "G", "0 to"},
+    {"bounds = \"box\"", 1, "bounds", "shape, obb"},
+    {floor_lines + "[exact]\n", 5, "exact.solution", "missing"},
+    {floor_lines + "[exact]\nsolution = \"elastic-drops\"", 6, "exact.solution",
+     "did you mean \"elastic-drop\""},
+    {floor_lines + "[exact]\nH = 1", 6, "exact.H", "unknown key"},
+};
+
+const std::vector<BadScene> not_toml = {
+    {"duration 3", 1, "", "not TOML"},
+    {"duration = 1\nduration = 2", 2, "", "not TOML"},
+    {"name = \"never closed", 1, "", "not TOML"},
+    {"[[body", 1, "", "not TOML"},
+    {"G = 99999999999999999999", 1, "", "not TOML"},
+};
+
+const std::vector<BadScene> bodies = {
+    {"[[body]]\nentity = \"ball\"", 1, "body[0].name", "missing"},
+    {"[[body]]\nname = \"\"", 2, "body[0].name", "no name"},
+    {"[[body]]\nname = \"a,b\"", 2, "body[0].name", "no name"},
+    {"[[body]]\nname = 7", 2, "body[0].name", "a string"},
+    {"[[body]]\nname = \"x\"", 1, "body.x.entity", "missing"},
+    {"[[body]]\nname = \"x\"\nentity = \"bal\"", 3, "body.x.entity", "did you mean \"ball\""},
+    {floor_lines + floor_lines, 6, "body.floor.name", "line 1"},
+    {ball_lines + "mas = 1", 6, "body.ball.mas", "did you mean \"mass\""},
+    {ball_lines + "belt_mass = 1", 6, "body.ball.belt_mass", "unknown key"},
+    {"[[body]]\nname = \"x\"\nentity = \"ball\"\nmass = 1", 1, "body.x.shape", "missing"},
+    {ball_lines + "half_extents = [1, 1, 1]", 1, "body.ball.shape", "both"},
+    {ball_lines + "shape = \"box\"", 4, "body.ball.radius", "no radius"},
+    {ball_lines + "shape = \"cube\"", 6, "body.ball.shape", "sphere, box, half-space"},
+    {"[[body]]\nname = \"x\"\nentity = \"wall\"\nshape = \"sphere\"", 1, "body.x.radius",
+     "missing"},
+    {"[[body]]\nname = \"x\"\nentity = \"wall\"\nshape = \"half-space\"\nhalf_extents = [1, 1, 1]",
+     5, "body.x.half_extents", "no half_extents"},
+    {"[[body]]\nname = \"x\"\nentity = \"wall\"\nradius = 0", 4, "body.x.radius", "is 0"},
+    {"[[body]]\nname = \"x\"\nentity = \"wall\"\nradius = -1", 4, "body.x.radius", "is -1"},
+    {"[[body]]\nname = \"x\"\nentity = \"wall\"\nradius = nan", 4, "body.x.radius", "is nan"},
+    {"[[body]]\nname = \"x\"\nentity = \"wall\"\nradius = 1e300", 4, "body.x.radius", "is 1e+300"},
+    {"[[body]]\nname = \"x\"\nentity = \"wall\"\nradius = \"1\"", 4, "body.x.radius", "a string"},
+    {"[[body]]\nname = \"x\"\nentity = \"wall\"\nhalf_extents = [1, 1]", 4, "body.x.half_extents",
+     "an array of 2"},
+    {"[[body]]\nname = \"x\"\nentity = \"wall\"\nhalf_extents = [1, -1, 1]", 4,
+     "body.x.half_extents[1]", "is -1"},
+    {"[[body]]\nname = \"x\"\nentity = \"wall\"\nhalf_extents = 1", 4, "body.x.half_extents",
+     "a whole number"},
+    {"[[body]]\nname = \"x\"\nentity = \"ball\"\nradius = 1", 1, "body.x.mass", "missing"},
+    {"[[body]]\nname = \"x\"\nentity = \"ball\"\nradius = 1\nmass = 0", 5, "body.x.mass", "is 0"},
+    {"[[body]]\nname = \"x\"\nentity = \"ball\"\nradius = 1\nmass = -1", 5, "body.x.mass", "is -1"},
+    {"[[body]]\nname = \"x\"\nentity = \"ball\"\nradius = 1\nmass = 1e31", 5, "body.x.mass",
+     "1e+31"},
+    {"[[body]]\nname = \"x\"\nentity = \"ball\"\nmass = 1\nshape = \"half-space\"", 5,
+     "body.x.shape", "cannot move freely"},
+    {wall_lines + "mass = 1", 5, "body.wall.mass", "infinite mass"},
+    {wall_lines + "velocity = [1, 0, 0]", 5, "body.wall.velocity", "drive"},
+    {wall_lines + "angular_velocity = [1, 0, 0]", 5, "body.wall.angular_velocity", "drive"},
+    {wall_lines + "inertia = [1, 1, 1]", 5, "body.wall.inertia", "nothing turns"},
+    {wall_lines + "normal = [0, 0, 0]", 5, "body.wall.normal", "length 0"},
+    {ball_lines + "normal = [0, 1, 0]", 6, "body.ball.normal", "no reflecting face"},
+    {floor_lines + "normal = [0, 1, 0]\norientation = [1, 0, 0, 0]", 5, "body.floor.normal",
+     "orientation is given too"},
+    {floor_lines + "bounds = \"obb\"", 5, "body.floor.bounds", "no box around it"},
+    {ball_lines + "position = [0, inf, 0]", 6, "body.ball.position[1]", "is inf"},
+    {ball_lines + "position = [0, \"up\", 0]", 6, "body.ball.position[1]", "a string"},
+    {ball_lines + "velocity = [0, 1e13, 0]", 6, "body.ball.velocity[1]", "to 1e+12"},
+    {ball_lines + "angular_velocity = [0, 1, 0]", 6, "body.ball.angular_velocity", "does not turn"},
+    {ball_lines + "orientation = [0, 0, 0, 0]", 6, "body.ball.orientation", "norm 0"},
+    {ball_lines + "orientation = [1, 0, 0, 0.01]", 6, "body.ball.orientation", "unit quaternion"},
+    {ball_lines + "orientation = [1e300, 0, 0, 0]", 6, "body.ball.orientation[0]", "1e+300"},
+    {ball_lines + "orientation = [1, 0, 0]", 6, "body.ball.orientation", "an array of 3"},
+    {ball_lines + "axis_angle = [0, 0, 0, 1]", 6, "body.ball.axis_angle", "length 0"},
+    {ball_lines + "orientation = [1, 0, 0, 0]\naxis_angle = [1, 0, 0, 1]", 7,
+     "body.ball.axis_angle", "one of"},
+    {ball_lines + "restitution = 1.1", 6, "body.ball.restitution", "0 to 1"},
+    {ball_lines + "restitution = -0.1", 6, "body.ball.restitution", "0 to 1"},
+    {ball_lines + "collision_type = \"oval\"", 6, "body.ball.collision_type", "square, round"},
+    {ball_lines + "scale = 0", 6, "body.ball.scale", "> 0"},
+    {ball_lines + "drive = {frequency = 1}", 6, "body.ball.drive", "moves freely"},
+    {body_lines + "inertia = [1, 1, 3]", 6, "body.box.inertia", "exceeds the sum"},
+    {body_lines + "inertia = [0, 1, 1]", 6, "body.box.inertia[0]", "> 0"},
+    {bat_lines, 1, "body.bat.drive", "missing"},
+    {bat_lines + "nudge = -1\ndrive = {frequency = 1}", 6, "body.bat.nudge", "is -1"},
+};
+
+const std::vector<BadScene> drives = {
+    {bat_lines + "drive = 3", 6, "body.bat.drive", "a table"},
+    {bat_lines + "drive = {}", 6, "body.bat.drive", "track"},
+    {bat_lines + "drive = {smooth = true}", 6, "body.bat.drive", "track"},
+    {bat_lines + "drive = {frequency = 0, amplitude = [1, 0, 0]}", 6, "body.bat.drive.frequency",
+     "> 0"},
+    {bat_lines + "drive = {frequency = 1}", 6, "body.bat.drive.amplitude", "missing"},
+    {bat_lines + "drive = {amplitude = [1, 0, 0]}", 6, "body.bat.drive.frequency", "missing"},
+    {bat_lines + "drive = {frequency = 1, track = \"a.csv\"}", 6, "body.bat.drive.track",
+     "sinusoid"},
+    {bat_lines + "drive = {frequency = 1, amplitude = [1, 0, 0], phase = inf}", 6,
+     "body.bat.drive.phase", "is inf"},
+    {bat_lines + "drive = {frequency = 1, rotation_amplitude = 1}", 6, "body.bat.drive.amplitude",
+     "missing"},
+    {bat_lines + "drive = {frequency = 1, amplitude = [1, 0, 0], rotation_amplitude = 1}", 6,
+     "body.bat.drive.rotation_amplitude", "rotation_axis"},
+    {bat_lines + "drive = {frequency = 1, rotation_axis = [0, 0, 0], rotation_amplitude = 1}", 6,
+     "body.bat.drive.rotation_axis", "length 0"},
+    {bat_lines + "drive = {frequency = 1, rotation_axis = [0, 0, 1], rotation_amplitude = 4}", 6,
+     "body.bat.drive.rotation_amplitude", "3.2"},
+    {floor_lines + "drive = {frequency = 1, rotation_axis = [0, 0, 1], rotation_amplitude = 1}", 5,
+     "body.floor.drive.rotation_axis", "half-space cannot turn"},
+};
+
+}  // namespace
+
+TEST_CASE("bad scenes: the top level", "[scene][input]") {
+  for (const BadScene& bad : top_level) {
+    check_refused(bad);
+  }
+}
+
+TEST_CASE("bad scenes: what is no TOML", "[scene][input]") {
+  for (const BadScene& bad : not_toml) {
+    check_refused(bad);
+  }
+}
+
+TEST_CASE("bad scenes: bodies", "[scene][input]") {
+  for (const BadScene& bad : bodies) {
+    check_refused(bad);
+  }
+}
+
+TEST_CASE("bad scenes: drives", "[scene][input]") {
+  for (const BadScene& bad : drives) {
+    check_refused(bad);
+  }
+}
+
+TEST_CASE("bad scenes: every prefix of a scene is read or refused, never more", "[scene][input]") {
+  const std::string path = std::string(KAIROS_SOURCE_DIR) + "/scenes/bat.toml";
+  const std::string text = read_text_file(path);
+  std::size_t refused = 0;
+  for (std::size_t n = 0; n < text.size(); ++n) {
+    try {
+      (void)parse_scene(text.substr(0, n), path);
+    } catch (const InputError&) {
+      ++refused;
+    }
+  }
+  CHECK(refused > text.size() / 2);
+}
+
+TEST_CASE("bad scenes: files that cannot be read", "[scene][input]") {
+  CHECK_THROWS_AS(read_scene("/no/such/scene.toml"), InputError);
+  CHECK_THROWS_AS(read_scene(std::filesystem::temp_directory_path().string()), InputError);
+}
+
+TEST_CASE("overrides: what they cannot set is named", "[scene][input]") {
+  struct BadOverride {
+    Override change;
+    std::string part;
+  };
+  const std::vector<BadOverride> cases = {
+      {{"body.bal.radius", "1"}, "did you mean \"ball\""},
+      {{"body[7].radius", "1"}, "no element [7]"},
+      {{"body[x].radius", "1"}, "no index"},
+      {{"body.ball.position[3]", "1"}, "no element"},
+      {{"body.ball.position[0", "1"}, "without a ]"},
+      {{"body.ball.radius.x", "1"}, "holds no keys"},
+      {{"frame.jitter", "0.1"}, "to set a value in"},
+      {{"", "1"}, "no path"},
+      {{"a..b", "1"}, "no path"},
+      {{"body.ball.radios", "1"}, "did you mean \"radius\""},
+      {{"body.ball.radius", "-1"}, "is -1"},
+      {{"body.ball.radius", "1\nG = 2"}, "a string"},
+      {{"duration", "nan"}, "is nan"},
+      {{"body", "3"}, "a whole number"},
+  };
+  for (const BadOverride& bad : cases) {
+    INFO(bad.change.key << " = " << bad.change.value);
+    try {
+      (void)parse_scene(ball_lines + "position = [0, 1, 0]\n", "scene.toml", {bad.change});
+      FAIL("was not refused");
+    } catch (const InputError& error) {
+      INFO(error.what());
+      CHECK(error.reason().find(bad.part) != std::string::npos);
+    }
+  }
+}
+
+TEST_CASE("bad tracks and frame times are named by file and line", "[scene][input]") {
+  struct BadFile {
+    std::string text;
+    int line;
+    std::string key;
+  };
+  const auto folder = std::filesystem::temp_directory_path() / "kairos-bad-tracks";
+  std::filesystem::create_directories(folder);
+  const std::string path = (folder / "track.csv").string();
+  const auto check = [&](const std::string& scene, const BadFile& bad) {
+    std::ofstream(path, std::ios::binary) << bad.text;
+    INFO(bad.text);
+    try {
+      (void)parse_scene(scene, (folder / "scene.toml").string());
+      FAIL("was not refused");
+    } catch (const InputError& error) {
+      INFO(error.what());
+      CHECK(error.file() == path);
+      CHECK(error.line() == bad.line);
+      CHECK(error.key() == bad.key);
+    }
+  };
+  const std::string header = "t,x,y,z,qw,qx,qy,qz\n";
+  const std::vector<BadFile> tracks = {
+      {"", 0, ""},
+      {header, 0, ""},
+      {"t,x,y\n0,0,0\n", 1, "z"},
+      {"t,x,y,z,qw\n0,0,0,0,1\n", 1, "qx"},
+      {"t,x,y,z,x\n0,0,0,0,0\n", 1, "x"},
+      {header + "0,0,0,0,1,0,0,0\n1,0,0,0,1,0,", 3, ""},
+      {header + "0,0,0,0,1,0,0,0\n0,0,0,0,1,0,0,0\n", 3, "t"},
+      {header + "1,0,0,0,1,0,0,0\n0,0,0,0,1,0,0,0\n", 3, "t"},
+      {header + "# a comment\n0,0,nan,0,1,0,0,0\n", 3, "y"},
+      {header + "0,0,0,up,1,0,0,0\n", 2, "z"},
+      {header + "0,0,0,1e13,1,0,0,0\n", 2, "z"},
+      {header + "0,0,0,0,1,1,0,0\n", 2, "qw,qx,qy,qz"},
+      {header + "0,0,0,0,0,0,0,0\n", 2, "qw,qx,qy,qz"},
+  };
+  for (const BadFile& bad : tracks) {
+    check(bat_lines + "drive = {track = \"track.csv\"}", bad);
+  }
+  const std::vector<BadFile> frames = {
+      {"", 0, ""},
+      {"duration\n", 0, ""},
+      {"0.1\n0\n", 2, "duration"},
+      {"0.1\n-1\n", 2, "duration"},
+      {"0.1\nx\n", 2, "duration"},
+      {"time\n0.1\n", 1, "duration"},
+      {"0.1\n1e400\n", 2, "duration"},
+  };
+  for (const BadFile& bad : frames) {
+    check("frame = {csv = \"track.csv\"}\n" + floor_lines, bad);
+  }
+  std::filesystem::remove_all(folder);
+}
