@@ -9,6 +9,10 @@
 #include "integrators/lie_group.hpp"
 #include "integrators/runge_kutta_4.hpp"
 #include "integrators/splitting.hpp"
+#ifdef KAIROS_WITH_SUNDIALS
+#include "integrators/sundials/arkode.hpp"
+#include "integrators/sundials/cvode.hpp"
+#endif
 #include "integrators/velocity_verlet.hpp"
 
 namespace kairos::integrators {
@@ -32,6 +36,16 @@ std::span<const CatalogueEntry> catalogue() {
       {gsl_rk8pd_info, make_gsl_rk8pd},
       {gsl_msadams_info, make_gsl_msadams},
       {gsl_bsimp_info, make_gsl_bsimp},
+#endif
+#ifdef KAIROS_WITH_SUNDIALS
+      {cvode_adams_info, make_cvode_adams},
+      {cvode_bdf_info, make_cvode_bdf},
+      {arkode_info("arkode-2", 2), make_arkode_2},
+      {arkode_info("arkode-3", 3), make_arkode_3},
+      {arkode_info("arkode-4", 4), make_arkode_4},
+      {arkode_info("arkode-5", 5), make_arkode_5},
+      {arkode_info("arkode-6", 6), make_arkode_6},
+      {arkode_info("arkode-8", 8), make_arkode_8},
 #endif
   };
   return entries;

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cvode/cvode.h>
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_context.h>
+#include <sundials/sundials_version.h>
+
+#include <memory>
+
+/// What differs between SUNDIALS 6 and 7, in one place: the type of a communicator, and how its
+/// chatter on stderr is switched off. The paths of 7 follow its release notes and are unverified
+/// where the distribution has no 7. To be included by .cpp files only.
+namespace kairos::integrators::sundials {
+
+#if SUNDIALS_VERSION_MAJOR >= 7
+using Real = sunrealtype;
+#else
+using Real = realtype;
+#endif
+
+struct FreeContext {
+  void operator()(SUNContext context) const { SUNContext_Free(&context); }
+};
+using Context = std::unique_ptr<std::remove_pointer_t<SUNContext>, FreeContext>;
+
+/// A context of one stepper's own: steppers of different threads share nothing.
+inline Context make_context() {
+  SUNContext context = nullptr;
+#if SUNDIALS_VERSION_MAJOR >= 7
+  SUNContext_Create(SUN_COMM_NULL, &context);
+  SUNContext_ClearErrHandlers(context);
+#else
+  SUNContext_Create(nullptr, &context);
+#endif
+  return Context(context);
+}
+
+struct FreeVector {
+  void operator()(N_Vector vector) const { N_VDestroy(vector); }
+};
+using Vector = std::unique_ptr<std::remove_pointer_t<N_Vector>, FreeVector>;
+
+inline Vector make_vector(std::size_t size, SUNContext context) {
+  return Vector(N_VNew_Serial(static_cast<sunindextype>(size), context));
+}
+inline double* data(N_Vector vector) { return N_VGetArrayPointer(vector); }
+
+#if SUNDIALS_VERSION_MAJOR < 7
+/// Failures are told by return values.
+inline void ignore_message(int, const char*, const char*, char*, void*) {}
+#endif
+
+}  // namespace kairos::integrators::sundials
