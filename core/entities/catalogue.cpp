@@ -11,6 +11,7 @@ EntityType body();
 EntityType conveyor();
 EntityType anti_gravity_pad();
 EntityType bat();
+EntityType balloon();
 
 }  // namespace entities
 
@@ -22,6 +23,7 @@ std::span<const EntityType> entity_catalogue() {
       entities::conveyor(),
       entities::anti_gravity_pad(),
       entities::bat(),
+      entities::balloon(),
   };
   return catalogue;
 }
