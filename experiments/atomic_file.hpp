@@ -5,11 +5,12 @@
 
 namespace kairos::experiments {
 
-/// A file that appears whole or not at all: written under a temporary name in the same folder,
-/// flushed to the disk, then renamed. Every write is checked.
+/// A file that appears whole or not at all: written without a name (where the file system can;
+/// under a hidden one elsewhere) in its folder, flushed to the disk, then renamed. Every write is
+/// checked. A process that is killed leaves nothing.
 class AtomicFile {
  public:
-  /// Creates the temporary file. Throws `InputError` where that is impossible.
+  /// Opens the temporary file. Throws `InputError` where that is impossible.
   explicit AtomicFile(std::string path);
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -29,7 +30,7 @@ class AtomicFile {
   void flush();
 
   std::string path_;
-  std::string temporary_;
+  std::string temporary_;  ///< empty: has no name (yet)
   std::string buffer_;
   int descriptor_ = -1;
 };

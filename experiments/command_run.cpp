@@ -2,6 +2,7 @@
 #include "experiments/broadcast.hpp"
 #include "experiments/commands.hpp"
 #include "experiments/output_folder.hpp"
+#include "experiments/progress_bar.hpp"
 #include "experiments/run_error.hpp"
 #include "experiments/run_files.hpp"
 #include "experiments/run_metrics.hpp"
@@ -10,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <memory>
@@ -17,6 +19,20 @@
 
 namespace kairos::experiments {
 namespace {
+
+/// Shows a person how far the run has come.
+class ProgressRecorder : public Recorder {
+ public:
+  ProgressRecorder(const Scene& scene, const RunChoice& choice)
+      : bar_("run",
+             static_cast<std::size_t>(choice.duration.value_or(scene.duration) /
+                                      mean_frame_duration(choice.frames.value_or(scene.frames)))) {}
+
+  void frame(const Frame& /*frame*/) override { bar_.advance(); }
+
+ private:
+  ProgressBar bar_;
+};
 
 struct RunCommand {
   SceneOptions scene;
@@ -42,8 +58,13 @@ void RunCommand::run() const {
     files.emplace(*folder);
     listeners.push_back(&*files);
   }
+  std::optional<ProgressRecorder> progress;
+  if (::isatty(STDERR_FILENO) == 1) {
+    listeners.push_back(&progress.emplace(model.scene(), choice));
+  }
   Broadcast recorder(listeners);
   const RunResult result = simulate(model, choice, recorder);
+  progress.reset();
 
   const FinishedRun finished{model, choice, result, metrics.metrics()};
   if (folder) {

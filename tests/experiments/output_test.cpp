@@ -118,3 +118,17 @@ TEST_CASE("input that is wrong makes no folder", "[output]") {
       2);
   CHECK(folder.entries() == before);
 }
+
+TEST_CASE("a run that is killed leaves no file", "[output][fault]") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.file("drop.toml", drop_scene);
+  // Two seconds of processor time are not enough for 1e9 s at 60 frames a second.
+  const Outcome killed =
+      kairos_program({"run", scene, "--thesis", "--duration", "1e9", "--out", folder.path("out")},
+                     {.processor_seconds = 2});
+  CHECK(killed.exit_code < 0);
+  for (const std::string& name : folder.entries("out")) {
+    CAPTURE(name);
+    CHECK(name.starts_with("."));  // where the file system cannot do without a name
+  }
+}

@@ -35,6 +35,8 @@ void connect(int stream, const std::string& path, int flags) {
     const ::rlimit limit{surroundings.largest_file, surroundings.largest_file};
     ::setrlimit(RLIMIT_FSIZE, &limit);
   }
+  const ::rlimit seconds{surroundings.processor_seconds, surroundings.processor_seconds};
+  ::setrlimit(RLIMIT_CPU, &seconds);
   std::vector<char*> argv{const_cast<char*>(KAIROS_PROGRAM)};
   for (const std::string& argument : arguments) {
     argv.push_back(const_cast<char*>(argument.c_str()));

@@ -15,9 +15,10 @@ struct Outcome {
 };
 
 struct Surroundings {
-  std::string input = {};        ///< on stdin
-  std::string output = {};       ///< file that takes stdout; empty: caught in `Outcome::out`
-  std::size_t largest_file = 0;  ///< bytes; 0: no limit. Stands for a disk that fills
+  std::string input = {};            ///< on stdin
+  std::string output = {};           ///< file that takes stdout; empty: caught in `Outcome::out`
+  std::size_t largest_file = 0;      ///< bytes; 0: no limit. Stands for a disk that fills
+  unsigned processor_seconds = 100;  ///< then it is killed: a run that hangs fails its test
 };
 
 /// Runs the built program as a person would.
