@@ -23,16 +23,26 @@ namespace {
 /// Shows a person how far the run has come.
 class ProgressRecorder : public Recorder {
  public:
-  ProgressRecorder(const Scene& scene, const RunChoice& choice)
-      : bar_("run",
-             static_cast<std::size_t>(choice.duration.value_or(scene.duration) /
-                                      mean_frame_duration(choice.frames.value_or(scene.frames)))) {}
+  explicit ProgressRecorder(std::size_t frames) : frames_(frames), bar_("run", frames) {}
 
-  void frame(const Frame& /*frame*/) override { bar_.advance(); }
+  void frame(const Frame& /*frame*/) override {
+    if (drawn_ < frames_) {  // frame times that vary can be more than their mean tells
+      ++drawn_;
+      bar_.advance();
+    }
+  }
 
  private:
+  std::size_t frames_;
+  std::size_t drawn_ = 0;
   ProgressBar bar_;
 };
+
+std::size_t expected_frames(const Scene& scene, const RunChoice& choice) {
+  return static_cast<std::size_t>(choice.duration.value_or(scene.duration) /
+                                  mean_frame_duration(choice.frames.value_or(scene.frames))) +
+         1;
+}
 
 struct RunCommand {
   SceneOptions scene;
@@ -60,7 +70,7 @@ void RunCommand::run() const {
   }
   std::optional<ProgressRecorder> progress;
   if (::isatty(STDERR_FILENO) == 1) {
-    listeners.push_back(&progress.emplace(model.scene(), choice));
+    listeners.push_back(&progress.emplace(expected_frames(model.scene(), choice)));
   }
   Broadcast recorder(listeners);
   const RunResult result = simulate(model, choice, recorder);
