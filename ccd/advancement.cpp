@@ -135,7 +135,9 @@ class Advancement {
     const Witness witness = witness_;
     const double rate = approach();
     const double reach = witness.gap + 4.0 * k_.error / witness.length;
-    double ahead = std::max(8.0 * ulp(here.t), rate > 0.0 ? 1.5 * reach / rate : 0.0);
+    // A pair that leaves is followed until it is clear of roundoff; ulp(0) alone would never get
+    // there.
+    double ahead = std::max(8.0 * ulp(here.t), rate != 0.0 ? 1.5 * reach / std::abs(rate) : 0.0);
     const double remaining = motion_.duration() - here.t;
     const bool stuck = witness.gap <= 2.0 * here.error / witness.length;
     for (int attempt = 0; attempt < (stuck ? 200 : 3); ++attempt) {
