@@ -147,13 +147,13 @@ std::string summary_html(const std::string& folder, const std::string& sweep, st
 
 std::string overview_html(const std::string& folder, const std::vector<std::string>& sweeps) {
   static const std::vector<std::pair<std::string, std::string>> shown = {
-      {"max_penetration", "penetration / m"},
-      {"tunnelled", "through"},
-      {"energy_error", "energy error"}};
+      {"max_penetration.max", "deepest / m"},
+      {"passed.mean", "went through"},
+      {"energy_error.max", "energy error"}};
   std::vector<std::string> methods;
   std::map<std::string, std::string> cells;  // by method, sweep and metric
   for (const std::string& sweep : sweeps) {
-    const Table table = read_csv(path_of(folder, sweep, "_runs.csv"));
+    const Table table = read_csv(path_of(folder, sweep, "_summary.csv"));
     for (const auto& row : table.rows) {
       const std::string method = to_text(row[table.column("method")]);
       if (std::find(methods.begin(), methods.end(), method) == methods.end()) {
@@ -180,11 +180,8 @@ std::string overview_html(const std::string& folder, const std::vector<std::stri
     out += "<tr>" + data_cell(method);
     for (const std::string& sweep : sweeps) {
       for (const auto& metric : shown) {
-        std::string cell = cells[method + '\n' + sweep + '\n' + metric.first];
-        if (metric.first == "tunnelled" && !cell.empty()) {
-          cell = cell == "0" ? "no" : "yes";
-        }
-        out += data_cell(cell, metric.first == shown.front().first ? " first" : "");
+        out += data_cell(cells[method + '\n' + sweep + '\n' + metric.first],
+                         metric.first == shown.front().first ? " first" : "");
       }
     }
     out += "</tr>\n";

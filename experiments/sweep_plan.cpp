@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
@@ -198,6 +199,11 @@ std::string scene_path(const SweepSpec& spec) {
   std::error_code error;
   if (std::filesystem::is_regular_file(beside, error)) {
     return beside.string();
+  }
+  // A shipped name means the shipped scene, whatever lies about where the program is started.
+  const std::vector<std::string> shipped = shipped_scenes();
+  if (std::find(shipped.begin(), shipped.end(), spec.scene) != shipped.end()) {
+    return (std::filesystem::path(scene_folder()) / (spec.scene + ".toml")).string();
   }
   try {
     return find_scene(spec.scene);
