@@ -1,0 +1,264 @@
+// Contract of ContactDetector, run over every detector by name.
+#include "ccd/bisection.hpp"
+#include "ccd/certified.hpp"
+#include "ccd/conservative_advancement.hpp"
+#include "ccd/sat.hpp"
+#include "tests/catch.hpp"
+#include "tests/ccd/random_queries.hpp"
+
+#include <memory>
+#include <numbers>
+#include <vector>
+
+using namespace kairos;
+using namespace kairos::reference;
+
+namespace {
+
+std::vector<std::unique_ptr<ContactDetector>> detectors() {
+  std::vector<std::unique_ptr<ContactDetector>> all;
+  all.push_back(ccd::make_sat());
+  all.push_back(ccd::make_bisection());
+  all.push_back(ccd::make_conservative_advancement());
+  all.push_back(ccd::make_certified());
+  return all;
+}
+
+const Vector3 zero = Vector3::Zero();
+const double inf = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+TEST_CASE("detectors agree with long double on who overlaps", "[ccd][contract]") {
+  for (const auto& detector : detectors()) {
+    CAPTURE(std::string(detector->info().name));
+    Random random(1);
+    int wrong = 0;
+    for (int i = 0; i < 4000; ++i) {
+      const ShapeKinds kinds = shape_kinds[random.below(5)];
+      Query q{random_shape(random, kinds.a, 1.0), random_shape(random, kinds.b, 1.0),
+              moving(pose(random.vector(1.0), random.orientation()), zero),
+              moving(pose(random.vector(1.0), random.orientation()), zero), 0.0};
+      const Pose a = q.motion_a.pose(0);
+      const Pose b = q.motion_b.pose(0);
+      const Real truth = q.separation(0);
+      if (std::abs(truth) < 1e-13L) {  // roundoff of unit sizes
+        continue;
+      }
+      const bool overlaps = detector->overlaps(q.a, a, q.b, b);
+      const Overlap measured = detector->overlap(q.a, a, q.b, b);
+      wrong += overlaps != (truth <= 0) || overlaps != detector->overlaps(q.b, b, q.a, a) ||
+                       measured.overlapping != overlaps || (measured.gap > 0) == overlaps ||
+                       std::abs(measured.normal.norm() - 1.0) > 1e-12
+                   ? 1
+                   : 0;
+    }
+    CHECK(wrong == 0);
+  }
+}
+
+TEST_CASE("the measured gap separates: moved by it along the normal, the bodies touch",
+          "[ccd][contract]") {
+  const auto detector = ccd::make_certified();
+  Random random(2);
+  int wrong = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const ShapeKinds kinds = shape_kinds[random.below(5)];
+    Query q{random_shape(random, kinds.a, 1.0), random_shape(random, kinds.b, 1.0),
+            moving(pose(random.vector(1.0), random.orientation()), zero),
+            moving(pose(random.vector(1.5), random.orientation()), zero), 0.0};
+    const Overlap at = detector->overlap(q.a, q.motion_a.pose(0), q.b, q.motion_b.pose(0));
+    Query touching = q;
+    touching.motion_b.position[0] -= at.gap * at.normal;
+    wrong += std::abs(touching.separation(0)) > 1e-9L ? 1 : 0;  // roundoff, through 1/sine of edges
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("contact points are the middle of the patch", "[ccd][contract]") {
+  for (const auto& detector : detectors()) {
+    CAPTURE(std::string(detector->info().name));
+    const Pose floor = pose(zero);
+    const double root = std::numbers::sqrt2;
+    // Flat on a plane; on an edge; on a corner.
+    CHECK((detector->overlap(box(1, 2, 3), pose({5, 2, 7}), HalfSpace{}, floor).point -
+           Vector3(5, 0, 7))
+              .norm() < 1e-14);
+    const Quaternion on_edge = turned(Vector3::UnitX(), std::numbers::pi / 4);
+    CHECK((detector->overlap(box(1, 1, 1), pose({5, root, 7}, on_edge), HalfSpace{}, floor).point -
+           Vector3(5, 0, 7))
+              .norm() < 1e-14);
+    // Box on box, shifted: the patch is the common area.
+    const Overlap flat = detector->overlap(box(1, 1, 1), floor, box(1, 1, 1), pose({1, 2, 0.5}));
+    CHECK((flat.point - Vector3(0.5, 1, 0.25)).norm() < 1e-14);
+    CHECK((flat.normal - Vector3::UnitY()).norm() < 1e-14);
+    const Overlap edge =
+        detector->overlap(box(1, 1, 1), floor, box(1, 1, 1), pose({0.5, 1 + root, 0}, on_edge));
+    CHECK((edge.point - Vector3(0.5, 1, 0)).norm() < 1e-14);
+    // Crossed edges.
+    const Quaternion crossed = turned(Vector3::UnitZ(), std::numbers::pi / 4);
+    const Overlap point = detector->overlap(box(1, 1, 1), pose(zero, on_edge), box(1, 1, 1),
+                                            pose({0.1, 2 * root - 1e-3, 0.2}, crossed));
+    CHECK(point.gap == Approx(-1e-3).epsilon(1e-10));
+    CHECK((point.point - Vector3(0.1, root - 0.5e-3, 0)).norm() < 1e-12);
+  }
+}
+
+TEST_CASE("detectors that locate find a head-on impact, in every order of shapes",
+          "[ccd][contract]") {
+  struct Pair {
+    Shape a, b;
+    double contact;  ///< distance of the origins at contact
+  };
+  const Pair pairs[] = {{Sphere{0.5}, Sphere{0.5}, 1.0},
+                        {Sphere{0.5}, box(0.5, 0.5, 0.5), 1.0},
+                        {Sphere{0.5}, HalfSpace{}, 0.5},
+                        {box(0.5, 0.5, 0.5), box(0.5, 0.5, 0.5), 1.0},
+                        {box(0.5, 0.5, 0.5), HalfSpace{}, 0.5}};
+  for (const auto& detector : detectors()) {
+    const DetectorInfo info = detector->info();
+    CAPTURE(std::string(info.name));
+    for (const Pair& pair : pairs) {
+      Query q{pair.a, pair.b, moving(pose({0, 3, 0}), {0, -4, 0}), moving(pose(zero), zero), 1.0};
+      for (const Query& asked : {q, q.exchanged()}) {
+        const TimeOfImpact toi = asked.ask(*detector);
+        if (!info.locates) {
+          CHECK(toi.status == ToiStatus::separated);
+          continue;
+        }
+        CHECK(toi.status == ToiStatus::impact);
+        // Tolerance: 1e-9 of an extent of 1 at 4 m/s.
+        CHECK(toi.t_lo == Approx((3 - pair.contact) / 4).margin(1e-9));
+        CHECK(toi.t_lo <= toi.t_hi);
+        const Vector3 towards_b = asked.motion_b.position(0) - asked.motion_a.position(0);
+        CHECK(toi.normal.dot(towards_b.normalized()) == Approx(1.0).epsilon(1e-9));
+      }
+    }
+  }
+}
+
+TEST_CASE("what advancement calls separated is separated, and impacts are not late",
+          "[ccd][contract]") {
+  const auto advancement = ccd::make_conservative_advancement();
+  const auto certified = ccd::make_certified();
+  for (int d = 0; d < difficulties; ++d) {
+    for (const ShapeKinds kinds : shape_kinds) {
+      for (std::uint64_t seed = 1000; seed < 1200; ++seed) {
+        const Query q = random_query(static_cast<Difficulty>(d), kinds, seed);
+        const TimeOfImpact truth = q.ask(*certified);
+        const TimeOfImpact toi =
+            q.ask(*advancement, 1e-4 * smallest_extent(q.a.index() == 2 ? q.b : q.a));
+        if (truth.status == ToiStatus::impact) {
+          CHECK(toi.status == ToiStatus::impact);
+          CHECK(toi.t_lo <= truth.t_hi);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("bisection misses a grazed corner, certified does not", "[ccd][contract]") {
+  // The ball cuts the corner of a box by 1 mm between two looks.
+  const double cut = 1e-3;
+  const double side = 0.5 + (0.5 - cut) / std::numbers::sqrt2;
+  const Vector3 direction = Vector3(1, -1, 0).normalized();
+  Query q{Sphere{0.5}, box(0.5, 0.5, 0.5),
+          moving(pose(Vector3(side, side, 0) - 2.13 * direction), 20 * direction),
+          moving(pose(zero), zero), 1.0};
+  CHECK(q.ask(*ccd::make_certified()).status == ToiStatus::impact);
+  CHECK(q.ask(*ccd::make_bisection()).status == ToiStatus::separated);
+}
+
+TEST_CASE("windows may be infinite", "[ccd][contract]") {
+  const Motion floor = Motion::at_rest({}, pose(zero));
+  const Motion up = Motion::ballistic({}, inf, pose({0, 3, 0}), {{0, 1, 0}, zero}, zero);
+  const Motion thrown =
+      Motion::ballistic({}, inf, pose({0, 3, 0}), {{0, 1, 0}, {1, 2, 3}}, {0, -9.8, 0});
+  const Shape shapes[] = {Sphere{0.5}, box(0.5, 0.4, 0.3)};
+  const Shape plane = HalfSpace{};
+  const Shape slab = box(50, 1, 50);
+  for (const auto& detector : detectors()) {
+    if (!detector->info().locates) {
+      continue;
+    }
+    CAPTURE(std::string(detector->info().name));
+    for (const Shape& shape : shapes) {
+      for (const Shape& ground : {plane, slab}) {
+        CHECK(detector->time_of_impact({shape, up}, {ground, floor}, {{}, inf}, 0.0).status ==
+              ToiStatus::separated);
+        const TimeOfImpact toi =
+            detector->time_of_impact({shape, thrown}, {ground, floor}, {{}, inf}, 0.0);
+        CHECK(toi.status == ToiStatus::impact);
+        CHECK(toi.t_lo < 1.0);
+      }
+    }
+  }
+}
+
+TEST_CASE("the end of a contact", "[ccd][contract]") {
+  for (const auto& detector : detectors()) {
+    CAPTURE(std::string(detector->info().name));
+    struct Field {
+      Shape body, field;
+      double parts_at;  ///< height of the body's origin
+    };
+    const Field fields[] = {{Sphere{0.1}, box(1, 0.5, 1), 0.6},
+                            {Sphere{0.1}, HalfSpace{}, 0.1},
+                            {Sphere{0.1}, Sphere{0.5}, 0.6},
+                            {box(0.1, 0.1, 0.1), box(1, 0.5, 1), 0.6},
+                            {box(0.1, 0.1, 0.1), HalfSpace{}, 0.1}};
+    for (const Field& f : fields) {
+      Query q{f.body, f.field, moving(pose({0, -0.05, 0}), {0, 1, 0}), moving(pose(zero), zero),
+              1.0};
+      for (const Query& asked : {q, q.exchanged()}) {
+        const TimeOfImpact toi =
+            detector->time_of_separation(asked.moving_a(), asked.moving_b(), asked.window(), 0.0);
+        REQUIRE(toi.status == ToiStatus::impact);
+        CHECK(toi.t_lo <= f.parts_at + 0.05 + 1e-14);
+        CHECK(toi.t_hi >= f.parts_at + 0.05 - 1e-14);
+        CHECK(toi.t_hi - toi.t_lo < 1e-8);  // tolerance: 1e-9 of the extent over 1 m/s
+      }
+      q.motion_a = moving(pose({0, -0.05, 0}), {0, 0.1, 0});
+      CHECK(detector->time_of_separation(q.moving_a(), q.moving_b(), q.window(), 0.0).status ==
+            ToiStatus::overlapping);
+      q.motion_a = moving(pose({0, 2, 0}), {0, 0.1, 0});
+      CHECK(detector->time_of_separation(q.moving_a(), q.moving_b(), q.window(), 0.0).status ==
+            ToiStatus::separated);
+      // Entering from touch: it parts later, not now.
+      q.motion_a = moving(pose({0, f.parts_at, 0}), {0, -1, 0}, zero, {0, 4, 0});
+      const TimeOfImpact entered =
+          detector->time_of_separation(q.moving_a(), q.moving_b(), q.window(), 0.0);
+      CHECK(entered.status == ToiStatus::impact);
+      CHECK(entered.t_hi == Approx(0.5).epsilon(1e-6));  // tolerance over the speed of 1 m/s
+    }
+  }
+}
+
+TEST_CASE("error radii are added to the gap", "[ccd][contract]") {
+  const auto certified = ccd::make_certified();
+  for (const ShapeKinds kinds : shape_kinds) {
+    Random random(5);
+    Query q{random_shape(random, kinds.a, 1.0), random_shape(random, kinds.b, 1.0),
+            moving(pose({0, 3, 0}), {0, -3, 0}), moving(pose(zero), zero), 1.0};
+    const double plain = q.ask(*certified).t_lo;
+    q.motion_a.error_radius = 0.01;
+    q.motion_b.error_radius = 0.02;
+    const TimeOfImpact toi = q.ask(*certified);
+    CHECK(toi.status == ToiStatus::impact);
+    CHECK(toi.t_lo == Approx(plain - 0.01).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("no detector misses what sweeps overlap cannot exclude", "[ccd][contract]") {
+  const auto certified = ccd::make_certified();
+  for (int d = 0; d < difficulties; ++d) {
+    for (const ShapeKinds kinds : shape_kinds) {
+      for (std::uint64_t seed = 0; seed < 200; ++seed) {
+        const Query q = random_query(static_cast<Difficulty>(d), kinds, seed);
+        if (q.ask(*certified).status != ToiStatus::separated) {
+          CHECK(certified->swept_overlap(q.moving_a(), q.moving_b(), q.window()));
+        }
+      }
+    }
+  }
+}

@@ -1,0 +1,90 @@
+#pragma once
+
+#include "ccd/advancement.hpp"
+#include "tests/ccd/reference.hpp"
+
+#include <string>
+
+/// Short ways to write a query, and the one judge of all answers.
+namespace kairos::reference {
+
+inline Pose pose(const Vector3& position, const Quaternion& orientation = Quaternion::Identity()) {
+  return {position, orientation};
+}
+inline Box box(double x, double y, double z) { return {Vector3(x, y, z)}; }
+inline Quaternion turned(const Vector3& axis, double angle) {
+  return rotate(axis.normalized() * angle, Quaternion::Identity());
+}
+inline Motion moving(const Pose& at, const Vector3& velocity,
+                     const Vector3& angular = Vector3::Zero(),
+                     const Vector3& acceleration = Vector3::Zero(), double duration = 1.0) {
+  return Motion::ballistic({}, duration, at, {velocity, angular}, acceleration);
+}
+
+struct Query {
+  Shape a, b;
+  Motion motion_a, motion_b;
+  double duration = 1.0;
+
+  [[nodiscard]] MovingShape moving_a() const { return {a, motion_a}; }
+  [[nodiscard]] MovingShape moving_b() const { return {b, motion_b}; }
+  [[nodiscard]] Window window() const { return {{}, duration}; }
+  [[nodiscard]] TimeOfImpact ask(const ContactDetector& detector, double tolerance = 0.0) const {
+    return detector.time_of_impact(moving_a(), moving_b(), window(), tolerance);
+  }
+  [[nodiscard]] Real separation(Real t) const {
+    return reference::separation(moving_a(), t, moving_b(), t);
+  }
+  [[nodiscard]] Query exchanged() const { return {b, a, motion_b, motion_a, duration}; }
+};
+
+/// Roundoff of the reference: 64 long double roundings of the extent and the coordinates.
+inline Real reference_error(const Query& q) {
+  const auto size = [](const Shape& shape) {
+    const double r = bounding_radius(shape);
+    return std::isfinite(r) ? r : 0.0;
+  };
+  const Real d = relative_position(q.motion_a, 0, q.motion_b, 0).norm();
+  return 64 * std::numeric_limits<Real>::epsilon() * (d + size(q.a) + size(q.b));
+}
+
+/// Everything that `certified` promises of an answer, against the reference; empty if it keeps it.
+inline std::string broken_promise(const Query& q, const TimeOfImpact& toi, int samples = 200) {
+  const Real e = reference_error(q);
+  const double tolerance = ccd::default_tolerance(q.moving_a(), q.moving_b(), q.window());
+  const auto f = [&q](Real t) { return q.separation(t); };
+  if (!std::isfinite(toi.t_lo) || !(toi.t_lo >= 0.0) || !(toi.t_hi >= toi.t_lo) ||
+      toi.t_hi > q.duration) {
+    return "bracket is not within the window";
+  }
+  if (toi.status == ToiStatus::overlapping) {
+    return f(0) > e ? "not overlapping at the start" : "";
+  }
+  // A start in touch is a contact that began before: what counts is from when they have left.
+  Real from = 0;
+  while (f(from) <= e && from < toi.t_lo) {
+    from = from == 0 ? Real(1e-12) * q.duration : 2 * from;
+  }
+  if (from < toi.t_lo && least(f, from, toi.t_lo, samples) < -e) {
+    return toi.status == ToiStatus::separated ? "contact missed" : "late";
+  }
+  if (toi.status == ToiStatus::separated) {
+    return toi.t_lo == q.duration ? "" : "separated before the end of the window";
+  }
+  if (f(toi.t_lo) > tolerance + e) {
+    return "gap at t_lo above the tolerance";
+  }
+  if (toi.gap < 0.0 || toi.gap > std::max(Real(0), f(toi.t_lo)) * (1 + Real(1e-6)) + e) {
+    return "gap is not the distance from below";
+  }
+  if (std::abs(toi.normal.norm() - 1.0) > 1e-12) {  // 1e4 roundings: a few are made
+    return "normal is not unit";
+  }
+  // The start may be in touch to roundoff of doubles: approaching from there is a contact by t_hi.
+  if (toi.status == ToiStatus::impact && toi.t_hi > 0.0 && f(toi.t_hi) > e) {
+    return "no contact at t_hi";
+  }
+  return "";
+}
+
+}  // namespace kairos::reference
