@@ -1,6 +1,7 @@
 #pragma once
 
 #include "integrators/ode_stepper.hpp"
+#include "integrators/step_control.hpp"
 
 namespace kairos::integrators {
 
@@ -23,17 +24,32 @@ class CompositeStepper : public OdeStepper {
   }
 
   /// `failure`: the reason that a failed step gives.
-  CompositeStepper(std::size_t nodes, std::string_view failure)
-      : OdeStepper(nodes), substeps_(nodes - 1), failure_(failure) {}
+  CompositeStepper(std::size_t nodes, std::string_view failure, const StepperOptions& options)
+      : OdeStepper(nodes),
+        substeps_(nodes - 1),
+        failure_(failure),
+        dense_control_(options, 2 * static_cast<int>(nodes)) {}
+
+  /// The solver must forget its last steps, or cannot (it then keeps a dense output that is worse
+  /// than the tolerance).
+  [[nodiscard]] virtual bool rewind() { return true; }
 
   /// One step of the solver from local time s, where y has the rate `rate`, by at most h; y1 is
   /// written. Its right-hand side is `ode_.rhs`, in the local time of the composite step.
   virtual Substep substep(double s, double h, const double* y, const double* rate, double* y1) = 0;
 
  private:
+  bool advance(double h);
+  [[nodiscard]] double dense_error();
+
   std::size_t substeps_;
   std::string_view failure_;
-  std::vector<double> y_;
+  StepControl dense_control_;
+  std::vector<double> y_, rate_;
+  std::vector<Motion> motions_;
+  std::vector<BodyState> between_;
+  double reached_ = 0.0;  ///< s, local time of the last node
+  double error_ = 0.0;    ///< largest of the substeps
 };
 
 }  // namespace kairos::integrators

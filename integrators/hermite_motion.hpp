@@ -39,6 +39,11 @@ class HermiteMotion {
     return &values_[(2 * node + 1) * size_];
   }
   [[nodiscard]] std::size_t nodes() const { return used_; }
+  [[nodiscard]] double time(std::size_t node) const { return times_[node]; }
+  [[nodiscard]] Node node(std::size_t node) {
+    double* const first = &values_[2 * node * size_];
+    return {first, first + size_};
+  }
 
   /// `orientations`: of the bodies that do not rotate.
   void motions(const IslandOde& ode, bool constant_acceleration,

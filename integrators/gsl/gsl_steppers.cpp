@@ -75,7 +75,8 @@ class GslStepper : public CompositeStepper {
   }
 
  protected:
-  explicit GslStepper(std::size_t nodes) : CompositeStepper(nodes, failure) {
+  GslStepper(std::size_t nodes, const StepperOptions& options)
+      : CompositeStepper(nodes, failure, options) {
     gsl_set_error_handler_off();
   }
 
@@ -88,7 +89,7 @@ class GslOneStep final : public GslStepper {
  public:
   GslOneStep(const StepperInfo& info, const gsl_odeiv2_step_type* type, int control_order,
              const StepperOptions& options)
-      : GslStepper(nodes_for(info.velocity_order)),
+      : GslStepper(nodes_for(info.velocity_order), options),
         info_(info),
         type_(type),
         control_(options, control_order) {}
@@ -137,7 +138,7 @@ class GslOneStep final : public GslStepper {
 /// after an impact.
 class GslAdams final : public GslStepper {
  public:
-  explicit GslAdams(const StepperOptions& options) : GslStepper(3), options_(options) {}
+  explicit GslAdams(const StepperOptions& options) : GslStepper(3, options), options_(options) {}
   [[nodiscard]] StepperInfo info() const override { return gsl_msadams_info; }
 
   [[nodiscard]] std::string refuses(const Island& island) const override {
@@ -165,6 +166,9 @@ class GslAdams final : public GslStepper {
   }
 
  private:
+  // Its history would be lost.
+  [[nodiscard]] bool rewind() override { return false; }
+
   static constexpr double first_step = 1e-6;  // s; the controller lengthens it at once
 
   Substep substep(double s, double h, const double* y, const double* /*rate*/,

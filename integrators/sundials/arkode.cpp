@@ -29,8 +29,8 @@ constexpr bool forgets_last_stage(int order) {
 class Arkode final : public CompositeStepper {
  public:
   Arkode(const StepperInfo& info, const StepperOptions& options)
-      : CompositeStepper(nodes_for(info.order),
-                         "ARKODE: no step is short enough for the tolerance"),
+      : CompositeStepper(nodes_for(info.order), "ARKODE: no step is short enough for the tolerance",
+                         options),
         info_(info),
         options_(options) {}
   [[nodiscard]] StepperInfo info() const override { return info_; }
@@ -63,6 +63,11 @@ class Arkode final : public CompositeStepper {
   }
 
  private:
+  [[nodiscard]] bool rewind() override {
+    fresh_ = true;
+    return true;
+  }
+
   Substep substep(double s, double h, const double* y, const double* /*rate*/,
                   double* y1) override {
     // The clock runs on from step to step, unless it no longer resolves h.
