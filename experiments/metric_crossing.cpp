@@ -18,6 +18,7 @@ CrossingWatch::CrossingWatch(const Model& model) {
       gate.reach = box->half_extents.array() + bounding_radius(model.shape(body));
     } else if (std::holds_alternative<HalfSpace>(model.shape(solid))) {
       gate.half_space = true;
+      gate.reach[gate.axis] = bounding_radius(model.shape(body));
     } else {
       return;  // a sphere has no other side
     }
@@ -29,32 +30,33 @@ CrossingWatch::CrossingWatch(const Model& model) {
   }
 }
 
-bool CrossingWatch::passes(const Gate& gate, const Vector3& now) {
+bool CrossingWatch::within_face(const Gate& gate, const Vector3& now) {
   const double before = gate.last[gate.axis];
-  const double after = now[gate.axis];
-  if ((before < 0.0) == (after < 0.0)) {
-    return false;
-  }
-  if (gate.half_space) {
-    return true;
-  }
-  const Vector3 at = gate.last + (now - gate.last) * (before / (before - after));
+  const Vector3 at = gate.last + (now - gate.last) * (before / (before - now[gate.axis]));
   for (int i = 0; i < 3; ++i) {
-    if (i != gate.axis && std::abs(at[i]) > gate.reach[i]) {
+    if (!gate.half_space && i != gate.axis && std::abs(at[i]) > gate.reach[i]) {
       return false;
     }
   }
   return true;
 }
 
+void CrossingWatch::look(Gate& gate, const Vector3& now) {
+  if (gate.side != 0 && (gate.last[gate.axis] < 0.0) != (now[gate.axis] < 0.0)) {
+    gate.within_face = within_face(gate, now);
+  }
+  if (std::abs(now[gate.axis]) > gate.reach[gate.axis]) {
+    const int side = now[gate.axis] < 0.0 ? -1 : 1;
+    gate.crossings += gate.side == -side && gate.within_face ? 1 : 0;
+    gate.side = side;
+  }
+  gate.last = now;
+}
+
 void CrossingWatch::frame(const Frame& frame) {
   for (Gate& gate : gates_) {
-    const Vector3 now =
-        frame.bodies[gate.solid].pose.to_body(frame.bodies[gate.body].pose.position);
-    gate.crossings += drawn_ && passes(gate, now) ? 1 : 0;
-    gate.last = now;
+    look(gate, frame.bodies[gate.solid].pose.to_body(frame.bodies[gate.body].pose.position));
   }
-  drawn_ = true;
 }
 
 bool CrossingWatch::tunnelled() const {

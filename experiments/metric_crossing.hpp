@@ -8,11 +8,11 @@
 namespace kairos::experiments {
 
 /// Did a free body get to the other side of a solid that should have stopped it? Decided from the
-/// geometry of the drawn frames alone, so that every scheme is judged by the same measure: the
-/// side is that of the body's centre with respect to the middle of a box across its thinnest edge,
-/// in the box's own frame (so that a moving bat is judged as a resting wall is), or above and below
-/// a half-space. It changes when the centre passes within the box's face, widened by the body's
-/// size, between two frames. Tunnelled: the last side is not the first.
+/// geometry of the drawn frames alone, so that every scheme is judged by the same measure. A body
+/// is on one side of a box when it is clear of it along its thinnest edge, in the box's own frame
+/// (so that a moving bat is judged as a resting wall is); of a half-space, when it is wholly above
+/// or below. It has crossed when it becomes clear on the other side, its centre having passed
+/// within the box's face, widened by the body's size. Tunnelled: an odd number of crossings.
 class CrossingWatch {
  public:
   explicit CrossingWatch(const Model& model);
@@ -30,12 +30,14 @@ class CrossingWatch {
     bool half_space = false;
     Vector3 reach = Vector3::Zero();  ///< half-extents of the face plus the body's radius, m
     Vector3 last = Vector3::Zero();   ///< centre in the solid's frame, last frame
+    bool within_face = false;         ///< where the centre last changed sides
+    int side = 0;                     ///< on which the body was last clear: -1, 1; 0: nowhere yet
     std::int64_t crossings = 0;
   };
-  [[nodiscard]] static bool passes(const Gate& gate, const Vector3& now);
+  [[nodiscard]] static bool within_face(const Gate& gate, const Vector3& now);
+  static void look(Gate& gate, const Vector3& now);
 
   std::vector<Gate> gates_;
-  bool drawn_ = false;
 };
 
 }  // namespace kairos::experiments

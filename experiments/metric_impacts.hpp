@@ -1,8 +1,11 @@
 #pragma once
 
+#include "core/contact_detector.hpp"
 #include "core/event.hpp"
+#include "core/model.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 namespace kairos::experiments {
@@ -10,7 +13,7 @@ namespace kairos::experiments {
 /// When a body was hit, and whether it should have been.
 class ImpactWatch {
  public:
-  explicit ImpactWatch(BodyIndex body) : body_(body) {}
+  ImpactWatch(const Model& model, BodyIndex body);
   void event(const Event& event);
 
   [[nodiscard]] std::optional<double> first() const { return first_; }
@@ -23,6 +26,10 @@ class ImpactWatch {
   [[nodiscard]] std::int64_t separating() const { return separating_; }
 
  private:
+  [[nodiscard]] Contact contact_of(const Event& event) const;
+
+  const Model& model_;
+  std::shared_ptr<const ContactDetector> detector_;
   BodyIndex body_;
   std::optional<double> first_, last_, rest_;
   std::int64_t approaching_ = 0;

@@ -245,7 +245,7 @@ bool MetricRecorder::wants_motions() const {
 
 void MetricRecorder::begin(const Model& model) {
   const BodyIndex subject = subject_of(model, request_.subject);
-  watches_.reset(new Watches{subject, {}, {}, {}, ApexWatch(subject), ImpactWatch(subject)});
+  watches_.reset(new Watches{subject, {}, {}, {}, ApexWatch(subject), ImpactWatch(model, subject)});
   if (needed(request_, Needs::frames)) {
     watches_->frames.emplace().begin(model);
   }

@@ -87,7 +87,7 @@ def ledger(data, figures):
         values = [row.get(line) or 0.0 for row in rows]
         left = [positive[k] if v > 0 else negative[k] for k, v in enumerate(values)]
         panel.barh(methods, values, left=left, height=0.62, label=line.replace("_", " "),
-                   color=style.COLOURS[(2 * LINES.index(line) + 4) % len(style.COLOURS)],
+                   color=style.COLOURS[(LINES.index(line) + 4) % len(style.COLOURS)],
                    edgecolor="white", hatch=HATCHES[LINES.index(line)], linewidth=0.4)
         positive = [p + max(v, 0.0) for p, v in zip(positive, values)]
         negative = [p + min(v, 0.0) for p, v in zip(negative, values)]
@@ -96,6 +96,8 @@ def ledger(data, figures):
                label="energy gained", zorder=6)
     panel.axvline(0.0, color="black", linewidth=0.8)
     panel.set_xscale("symlog", linthresh=1e-3)
+    widest = 4.0 * max([1e-3] + [abs(gain) for gain in gains])
+    panel.set_xlim(-widest, widest)
     panel.invert_yaxis()
     panel.grid(axis="y", visible=False)
     panel.set_xlabel("energy into the ball / J (linear within ±1 mJ, logarithmic outside)")

@@ -10,7 +10,7 @@ def draw(data, figures):
     figure, panels = plt.subplots(1, 2, figsize=(8.8, 3.6), sharey=False)
     for panel, sweep, x, label in (
             (panels[0], "jitter", "jitter", "predicted: E[max(0, 1 − h₂/h₁)]"),
-            (panels[1], "restitution", "restitution", "predicted: 1 − e")):
+            (panels[1], "restitution", "e", "predicted: 1 − e")):
         rows = data.table(sweep, "summary")
         methods = unique(row["method"] for row in rows)
         for method in methods:
