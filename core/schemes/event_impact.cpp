@@ -50,7 +50,7 @@ void EventWorld::take() {
     case Due::recheck:
       return predict_pair(a, b, event.time);
     case Due::impact:
-      return impact(a, b, event.time, event.patience);
+      return impact(a, b, event.time, event.patience, event.decided);
   }
 }
 
@@ -82,7 +82,23 @@ void EventWorld::end_contact(BodyIndex i, Instant t) {
   actor.contact_begins = Instant::never();
 }
 
-void EventWorld::impact(BodyIndex a, BodyIndex b, Instant t, double patience) {
+/// Where the two touch at t: the centroid of the contact patch; where that does not approach, the
+/// nearest points (one corner of several that are within tolerance).
+Contact EventWorld::contact_at(BodyIndex a, BodyIndex b, Instant t, double patience) const {
+  const Overlap o = detector_.overlap(model_.shape(a), now_[a].pose, model_.shape(b), now_[b].pose);
+  const Contact patch{o.point, o.normal, o.gap};
+  if (normal_velocity(patch, now_[a], now_[b]) < 0.0 || patience <= 0.0) {
+    return patch;
+  }
+  const TimeOfImpact toi = detector_.time_of_impact({model_.shape(a), actors_[a].motion},
+                                                    {model_.shape(b), actors_[b].motion},
+                                                    {t, patience}, options_.toi_tolerance);
+  const Contact nearest{0.5 * (toi.witness_a + toi.witness_b), toi.normal, toi.gap};
+  const bool told = toi.status == ToiStatus::impact || toi.status == ToiStatus::undecided;
+  return told && normal_velocity(nearest, now_[a], now_[b]) < 0.0 ? nearest : patch;
+}
+
+void EventWorld::impact(BodyIndex a, BodyIndex b, Instant t, double patience, bool decided) {
   for (const BodyIndex i : {a, b}) {
     if (model_.is_free(i)) {
       book(flow_of(i), t);
@@ -91,12 +107,11 @@ void EventWorld::impact(BodyIndex a, BodyIndex b, Instant t, double patience) {
       now_[i] = state_at(i, t);
     }
   }
-  const Overlap o = detector_.overlap(model_.shape(a), now_[a].pose, model_.shape(b), now_[b].pose);
   Event event{.time = t, .kind = EventKind::impact, .a = a, .b = b};
-  event.contact = {o.point, o.normal, o.gap};
+  event.contact = contact_at(a, b, t, patience);
   const double approach = normal_velocity(event.contact, now_[a], now_[b]);
-  if (approach > 0.0 && patience > 0.0) {
-    return push(t + patience, Due::recheck, a, b);  // within tolerance, but leaving
+  if (!decided && approach >= 0.0 && patience > 0.0) {
+    return push(t + patience, Due::recheck, a, b);  // within tolerance, but not approaching
   }
   event.before_a = now_[a];
   event.before_b = now_[b];

@@ -8,8 +8,9 @@
 namespace kairos {
 inline namespace core {
 
-void EventWorld::push(Instant t, Due due, BodyIndex a, BodyIndex b, double patience) {
-  queue_.push({t, due, rank_[a], rank_[b], actors_[a].version, actors_[b].version, patience});
+void EventWorld::push(Instant t, Due due, BodyIndex a, BodyIndex b, double patience, bool decided) {
+  queue_.push(
+      {t, due, rank_[a], rank_[b], actors_[a].version, actors_[b].version, patience, decided});
 }
 
 void EventWorld::predict(BodyIndex i, Instant t, BodyIndex except) {
@@ -105,22 +106,32 @@ void EventWorld::predict_meeting(BodyIndex a, BodyIndex b, Instant t, double dur
     case ToiStatus::undecided:
       // A field is entered where contact is proven; solids never get that far.
       push(t + (field ? toi.t_hi : toi.t_lo), field ? Due::field_entered : Due::impact, a, b,
-           toi.t_hi - toi.t_lo);
+           toi.t_hi - toi.t_lo, toi.status == ToiStatus::impact);
       return;
     case ToiStatus::overlapping:
-      if (field) {
-        push(t, Due::field_entered, a, b);
-        return;
-      }
-      const Overlap o = detector_.overlap(model_.shape(a), state_at(a, t).pose, model_.shape(b),
-                                          state_at(b, t).pose);
-      if (normal_velocity({o.point, o.normal, o.gap}, state_at(a, t), state_at(b, t)) < 0.0) {
-        push(t, Due::impact, a, b);
-      } else {
-        predict_parting(a, b, t, duration, Due::recheck);
-      }
-      return;
+      return field ? push(t, Due::field_entered, a, b) : leave_overlap(a, b, t, duration);
   }
+}
+
+/// Two solids that a computation left inside each other, by roundoff: an impact if they approach,
+/// and nothing if they part; a pair that stays would fall through, so that the run stops.
+void EventWorld::leave_overlap(BodyIndex a, BodyIndex b, Instant t, double duration) {
+  const Overlap o =
+      detector_.overlap(model_.shape(a), state_at(a, t).pose, model_.shape(b), state_at(b, t).pose);
+  if (normal_velocity({o.point, o.normal, o.gap}, state_at(a, t), state_at(b, t)) < 0.0) {
+    return push(t, Due::impact, a, b);
+  }
+  const TimeOfImpact toi = detector_.time_of_separation({model_.shape(a), actors_[a].motion},
+                                                        {model_.shape(b), actors_[b].motion},
+                                                        {t, duration}, options_.toi_tolerance);
+  ++cost_.toi_queries;
+  cost_.toi_evaluations += toi.evaluations;
+  if (toi.status == ToiStatus::overlapping) {
+    return stop(t, "accumulation: " + names(a, b) +
+                       " stay in contact, and that is not a ball on a "
+                       "surface");
+  }
+  push(t + toi.t_hi, Due::recheck, a, b);
 }
 
 void EventWorld::predict_parting(BodyIndex a, BodyIndex b, Instant t, double duration, Due due) {

@@ -32,6 +32,7 @@ struct QueuedEvent {
   std::uint32_t version_a = 0;  ///< of the motions for which it was predicted
   std::uint32_t version_b = 0;
   double patience = 0.0;  ///< impact: t_hi - t_lo, s
+  bool decided = true;    ///< impact: contact by t_hi is proven
 
   [[nodiscard]] auto key() const { return std::tuple(time.seconds, time.correction, due, a, b); }
 };

@@ -199,7 +199,9 @@ void EventWorld::hold(Flow& flow, Instant t) {
   }
   const BodyIndex surface = actor.support->surface;
   const Motion under = actors_[surface].motion.shifted(t - actors_[surface].motion.start);
-  double until = face_exit_time(model_.shape(surface), under, actor.motion, actor.support->normal);
+  const double left = std::min({end_ - t, under.duration, actor.motion.duration});
+  double until =
+      face_exit_time(model_.shape(surface), under, actor.motion, actor.support->normal, left);
   if (model_.mobility(surface) == Mobility::driven) {
     until = std::min(until, lift_off_time(under, actor.support->normal, flow.island.inertia[0].mass,
                                           net_force(i)));

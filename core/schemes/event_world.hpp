@@ -83,10 +83,13 @@ class EventWorld {
   void predict_pair(BodyIndex i, BodyIndex j, Instant t);
   void predict_meeting(BodyIndex a, BodyIndex b, Instant t, double duration);
   void predict_parting(BodyIndex a, BodyIndex b, Instant t, double duration, Due due);
-  void push(Instant t, Due due, BodyIndex a, BodyIndex b, double patience = 0.0);
+  void push(Instant t, Due due, BodyIndex a, BodyIndex b, double patience = 0.0,
+            bool decided = true);
+  void leave_overlap(BodyIndex a, BodyIndex b, Instant t, double duration);
 
   // Events
-  void impact(BodyIndex a, BodyIndex b, Instant t, double patience);
+  void impact(BodyIndex a, BodyIndex b, Instant t, double patience, bool decided);
+  [[nodiscard]] Contact contact_at(BodyIndex a, BodyIndex b, Instant t, double patience) const;
   void land(BodyIndex a, BodyIndex b, const Contact& contact, Instant t);
   void settle(BodyIndex ball, const Support& support, double rebound, double pressing, double e,
               Instant t);

@@ -99,12 +99,11 @@ std::optional<Support> find_support(const Model& model, BodyIndex ball, const Ve
 }
 
 double face_exit_time(const Shape& surface, const Motion& surface_motion, const Motion& ball_motion,
-                      const Vector3& normal) {
+                      const Vector3& normal, double duration) {
   const auto* box = std::get_if<Box>(&surface);
   if (box == nullptr) {
     return infinity;
   }
-  const double duration = std::min(surface_motion.duration, ball_motion.duration);
   const Quaternion q = surface_motion.orientation(0.0);
   const int skipped = face_axis(q, normal);
   double earliest = infinity;

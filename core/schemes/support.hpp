@@ -23,10 +23,11 @@ struct Support {
                                                   const Motion& surface_motion, double s,
                                                   const Vector3& normal);
 
-/// When the ball's centre passes an edge of the face, local to both motions' common start, s;
-/// infinite if not while the motions last.
+/// When the ball's centre passes an edge of the face, within `duration` from both motions' common
+/// start, s; infinite if it does not.
 [[nodiscard]] double face_exit_time(const Shape& surface, const Motion& surface_motion,
-                                    const Motion& ball_motion, const Vector3& normal);
+                                    const Motion& ball_motion, const Vector3& normal,
+                                    double duration);
 
 /// When a driven surface draws away faster than the force on the ball (N) can follow: the first
 /// zero of the contact force m a_s.n - F.n, local to the surface's motion, s; infinite if none.
