@@ -14,7 +14,7 @@ void retreat_from_overlap(const MovingShape& a, const MovingShape& b, const Wind
     return;
   }
   double back = ulp(toi.t_lo);
-  for (int attempt = 0; attempt < 24 && toi.t_lo > 0.0; ++attempt) {
+  for (int attempt = 0; attempt < 40 && toi.t_lo > 0.0; ++attempt) {
     const Pose pose_a = a.motion.pose(local_time(a.motion, window, toi.t_lo));
     const Pose pose_b = b.motion.pose(local_time(b.motion, window, toi.t_lo));
     if (!shapes_overlap(a.shape, pose_a, b.shape, pose_b)) {

@@ -111,7 +111,7 @@ ContactPatch on_face(const Vector3& reference, int axis, double sign, const Vect
   // Roundoff of coordinates that went through a rotation and a clip: 1024 u of the sizes.
   const double level = lowest + 1024.0 * unit_roundoff * (reference.sum() + half.sum());
   const Vector3 on_b = centroid(clipped(face, axis, sign, level));
-  Vector3 on_a = on_b;
+  Vector3 on_a = on_b.cwiseMax(-reference).cwiseMin(reference);
   on_a[axis] = sign * reference[axis];
   return {on_a, on_b};
 }

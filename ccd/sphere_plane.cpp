@@ -136,14 +136,15 @@ struct SphereAbovePlane {
   void complete(TimeOfImpact& toi) const {
     Vector3 centre;
     double height = 0.0;
+    const Vector3 up = half_space_normal({plane.position[0], plane.orientation(0.0)});
     const double first = toi.t_lo;
     double back = ulp(toi.t_lo);
-    for (int attempt = 0; attempt < 12; ++attempt) {
+    for (int attempt = 0; attempt < 40; ++attempt) {
       centre = sphere.position(local_time(sphere, window, toi.t_lo));
       const Vector3 origin = plane.position.degree() == 0
                                  ? plane.position[0]
                                  : plane.position(local_time(plane, window, toi.t_lo));
-      height = level ? centre[1] - origin[1] : n.dot(centre - origin);
+      height = up.dot(centre - origin);
       if (height > radius || toi.t_lo == 0.0 || toi.status == ToiStatus::overlapping) {
         break;
       }

@@ -94,7 +94,9 @@ TEST_CASE("contact points are the middle of the patch", "[ccd][contract]") {
     CHECK((flat.normal - Vector3::UnitY()).norm() < 1e-14);
     const Overlap edge =
         detector->overlap(box(1, 1, 1), floor, box(1, 1, 1), pose({0.5, 1 + root, 0}, on_edge));
-    CHECK((edge.point - Vector3(0.5, 1, 0)).norm() < 1e-14);
+    // Common stretch: -0.5 to 1; the edge is found to within the band of 1024 u that counts as
+    // lowest.
+    CHECK((edge.point - Vector3(0.25, 1, 0)).norm() < 1e-12);
     // Crossed edges.
     const Quaternion crossed = turned(Vector3::UnitZ(), std::numbers::pi / 4);
     const Overlap point = detector->overlap(box(1, 1, 1), pose(zero, on_edge), box(1, 1, 1),
