@@ -60,8 +60,11 @@ TEST_CASE("model: a ball over a floor has no orientation, no solver, one pair", 
 TEST_CASE("model: every saving can be switched off", "[model]") {
   const Scene scene = read_scene(scenes + "billiard.toml");
   const Model lean(scene);
-  const Model full(scene,
-                   {.leave_out_orientation = false, .closed_form = false, .prune_pairs = false});
+  ModelOptions off;
+  off.leave_out_orientation = false;
+  off.closed_form = false;
+  off.prune_pairs = false;
+  const Model full(scene, off);
   CHECK(lean.pairs().size() == 216);
   CHECK(full.pairs().size() == 231);
   CHECK_FALSE(lean.rotates(6));
