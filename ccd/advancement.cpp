@@ -113,7 +113,8 @@ class Advancement {
     if (step >= remaining * (1.0 - 128.0 * u)) {
       return separated();
     }
-    const double next = k_.t + step;
+    // A step to the end of the bounds goes there exactly: no sliver is left for the next one.
+    const double next = step >= horizon * (1.0 - 128.0 * u) ? turn_.until : k_.t + step;
     if (!(next > k_.t)) {
       if (!motion_.simple() && turn_.until - k_.t > 64.0 * ulp(k_.t)) {
         last_step_ = (turn_.until - k_.t) / 64.0;  // bounds over a long piece were useless
