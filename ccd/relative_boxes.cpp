@@ -11,47 +11,76 @@ namespace {
 constexpr std::array<int, 3> next{1, 2, 0};
 constexpr std::array<int, 3> after{2, 0, 1};
 
-/// Separation along face normal i of a.
-double face_a(const RelativeBoxes& s, int i) {
-  return std::abs(s.d_A[i]) - s.half_a[i] -
-         (s.half_b[0] * std::abs(s.axes_A(i, 0)) + s.half_b[1] * std::abs(s.axes_A(i, 1)) +
-          s.half_b[2] * std::abs(s.axes_A(i, 2)));
+/// The boxes and |R|: every projection of an extent is a sum of these. Indices are template
+/// arguments, so that all fifteen separations are straight arithmetic on registers.
+struct Projections {
+  const RelativeBoxes& s;
+  Matrix3 R;
+  explicit Projections(const RelativeBoxes& boxes) : s(boxes), R(boxes.axes_A.cwiseAbs()) {}
+
+  /// Separation along face normal I of a.
+  template <int I>
+  double face_a() const {
+    return std::abs(s.d_A[I]) - s.half_a[I] -
+           (s.half_b[0] * R(I, 0) + s.half_b[1] * R(I, 1) + s.half_b[2] * R(I, 2));
+  }
+  /// Projection of d on axis J of b.
+  template <int J>
+  double along_b() const {
+    return s.d_A[0] * s.axes_A(0, J) + s.d_A[1] * s.axes_A(1, J) + s.d_A[2] * s.axes_A(2, J);
+  }
+  template <int J>
+  double face_b() const {
+    return std::abs(along_b<J>()) - s.half_b[J] -
+           (s.half_a[0] * R(0, J) + s.half_a[1] * R(1, J) + s.half_a[2] * R(2, J));
+  }
+  /// Projection of d on e_I x (axis J of b).
+  template <int I, int J>
+  double along_edges() const {
+    constexpr int k = next[I];
+    constexpr int l = after[I];
+    return s.d_A[l] * s.axes_A(k, J) - s.d_A[k] * s.axes_A(l, J);
+  }
+  template <int I, int J>
+  double edges() const {
+    constexpr int k = next[I];
+    constexpr int l = after[I];
+    constexpr int m = next[J];
+    constexpr int n = after[J];
+    return std::abs(along_edges<I, J>()) - (s.half_a[k] * R(l, J) + s.half_a[l] * R(k, J)) -
+           (s.half_b[m] * R(I, n) + s.half_b[n] * R(I, m));
+  }
+  /// Square of the sine between the edges.
+  template <int I, int J>
+  double sine_squared() const {
+    const double x = s.axes_A(next[I], J);
+    const double y = s.axes_A(after[I], J);
+    return x * x + y * y;
+  }
+};
+
+/// Calls f<I, J>() for all edge pairs in order; stops where one returns true.
+template <typename F>
+bool any_edge_pair(const F& f) {
+  return f.template operator()<0, 0>() || f.template operator()<0, 1>() ||
+         f.template operator()<0, 2>() || f.template operator()<1, 0>() ||
+         f.template operator()<1, 1>() || f.template operator()<1, 2>() ||
+         f.template operator()<2, 0>() || f.template operator()<2, 1>() ||
+         f.template operator()<2, 2>();
 }
 
-/// Projection of d on axis j of b.
-double along_b(const RelativeBoxes& s, int j) {
-  return s.d_A[0] * s.axes_A(0, j) + s.d_A[1] * s.axes_A(1, j) + s.d_A[2] * s.axes_A(2, j);
-}
-
-double face_b(const RelativeBoxes& s, int j) {
-  return std::abs(along_b(s, j)) - s.half_b[j] -
-         (s.half_a[0] * std::abs(s.axes_A(0, j)) + s.half_a[1] * std::abs(s.axes_A(1, j)) +
-          s.half_a[2] * std::abs(s.axes_A(2, j)));
-}
-
-/// Projection of d on e_i x (axis j of b).
-double along_edges(const RelativeBoxes& s, int i, int j) {
-  const int k = next[static_cast<std::size_t>(i)];
-  const int l = after[static_cast<std::size_t>(i)];
-  return s.d_A[l] * s.axes_A(k, j) - s.d_A[k] * s.axes_A(l, j);
-}
-
-double edges(const RelativeBoxes& s, int i, int j) {
-  const int k = next[static_cast<std::size_t>(i)];
-  const int l = after[static_cast<std::size_t>(i)];
-  const int m = next[static_cast<std::size_t>(j)];
-  const int n = after[static_cast<std::size_t>(j)];
-  const double radius_a =
-      s.half_a[k] * std::abs(s.axes_A(l, j)) + s.half_a[l] * std::abs(s.axes_A(k, j));
-  const double radius_b =
-      s.half_b[m] * std::abs(s.axes_A(i, n)) + s.half_b[n] * std::abs(s.axes_A(i, m));
-  return std::abs(along_edges(s, i, j)) - radius_a - radius_b;
-}
-
-double edge_length(const RelativeBoxes& s, int i, int j) {
-  const double x = s.axes_A(next[static_cast<std::size_t>(i)], j);
-  const double y = s.axes_A(after[static_cast<std::size_t>(i)], j);
-  return std::sqrt(x * x + y * y);
+template <int Axis>
+AxisSeparation separation_along(const Projections& p) {
+  if constexpr (Axis < 3) {
+    return {Axis, p.face_a<Axis>(), 1.0, p.s.d_A[Axis] < 0.0 ? -1.0 : 1.0};
+  } else if constexpr (Axis < 6) {
+    return {Axis, p.face_b<Axis - 3>(), 1.0, p.along_b<Axis - 3>() < 0.0 ? -1.0 : 1.0};
+  } else {
+    constexpr int i = (Axis - 6) / 3;
+    constexpr int j = (Axis - 6) % 3;
+    return {Axis, p.edges<i, j>(), std::sqrt(p.sine_squared<i, j>()),
+            p.along_edges<i, j>() < 0.0 ? -1.0 : 1.0};
+  }
 }
 
 }  // namespace
@@ -75,49 +104,40 @@ double RelativeBoxes::error() const {
 }
 
 AxisSeparation axis_separation(const RelativeBoxes& s, int axis) {
-  if (axis < 3) {
-    return {axis, face_a(s, axis), 1.0, s.d_A[axis] < 0.0 ? -1.0 : 1.0};
-  }
-  if (axis < 6) {
-    return {axis, face_b(s, axis - 3), 1.0, along_b(s, axis - 3) < 0.0 ? -1.0 : 1.0};
-  }
-  const int i = (axis - 6) / 3;
-  const int j = (axis - 6) % 3;
-  return {axis, edges(s, i, j), edge_length(s, i, j), along_edges(s, i, j) < 0.0 ? -1.0 : 1.0};
+  using Along = AxisSeparation (*)(const Projections&);
+  static constexpr std::array<Along, axis_count> along{
+      separation_along<0>,  separation_along<1>,  separation_along<2>,  separation_along<3>,
+      separation_along<4>,  separation_along<5>,  separation_along<6>,  separation_along<7>,
+      separation_along<8>,  separation_along<9>,  separation_along<10>, separation_along<11>,
+      separation_along<12>, separation_along<13>, separation_along<14>};
+  return along[static_cast<std::size_t>(axis)](Projections(s));
 }
 
 AxisSeparation greatest_separation(const RelativeBoxes& s) {
+  const Projections p(s);
+  const std::array<double, 6> faces{p.face_a<0>(), p.face_a<1>(), p.face_a<2>(),
+                                    p.face_b<0>(), p.face_b<1>(), p.face_b<2>()};
   int best = 0;
-  double value = face_a(s, 0);
-  for (int i = 1; i < 3; ++i) {
-    const double f = face_a(s, i);
-    if (f > value) {
-      value = f;
+  for (int i = 1; i < 6; ++i) {
+    if (faces[static_cast<std::size_t>(i)] > faces[static_cast<std::size_t>(best)]) {
       best = i;
     }
   }
-  for (int j = 0; j < 3; ++j) {
-    const double f = face_b(s, j);
-    if (f > value) {
-      value = f;
-      best = 3 + j;
-    }
-  }
+  double value = faces[static_cast<std::size_t>(best)];
   const double error = s.error();
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      const double f = edges(s, i, j) - error;
-      // Dividing by a length of at most 1 raises only positive values.
-      if (f <= value && f <= 0.0 && value >= 0.0) {
-        continue;
-      }
-      const double length = edge_length(s, i, j);
-      if (f > value * length && length > 0.0) {
-        value = f / length;
-        best = 6 + 3 * i + j;
-      }
+  any_edge_pair([&]<int I, int J>() {
+    const double f = p.edges<I, J>() - error;
+    // Dividing by a sine raises only positive values: most pairs need no root.
+    if (f <= value && (f <= 0.0 ? value >= 0.0 : f * f <= value * value * p.sine_squared<I, J>())) {
+      return false;
     }
-  }
+    const double length = std::sqrt(p.sine_squared<I, J>());
+    if (f > value * length && length > 0.0) {
+      value = f / length;
+      best = 6 + 3 * I + J;
+    }
+    return false;
+  });
   return axis_separation(s, best);
 }
 
@@ -137,47 +157,33 @@ Vector3 axis_normal(const RelativeBoxes& s, const AxisSeparation& axis) {
 }
 
 bool boxes_overlap(const RelativeBoxes& s) {
-  for (int i = 0; i < 3; ++i) {
-    if (face_a(s, i) > 0.0) {
-      return false;
-    }
-  }
-  for (int j = 0; j < 3; ++j) {
-    if (face_b(s, j) > 0.0) {
-      return false;
-    }
+  const Projections p(s);
+  if (p.face_a<0>() > 0.0 || p.face_a<1>() > 0.0 || p.face_a<2>() > 0.0 || p.face_b<0>() > 0.0 ||
+      p.face_b<1>() > 0.0 || p.face_b<2>() > 0.0) {
+    return false;
   }
   const double error = s.error();
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      if (edges(s, i, j) > error) {
-        return false;
-      }
-    }
-  }
-  return true;
+  return !any_edge_pair([&]<int I, int J>() { return p.edges<I, J>() > error; });
 }
 
 Verdict classify(const RelativeBoxes& s) {
+  const Projections p(s);
   const double error = s.error();
-  double faces = -infinity;
-  for (int i = 0; i < 3; ++i) {
-    faces = std::max({faces, face_a(s, i), face_b(s, i)});
-  }
-  if (faces > error) {
+  if (p.face_a<0>() > error || p.face_a<1>() > error || p.face_a<2>() > error ||
+      p.face_b<0>() > error || p.face_b<1>() > error || p.face_b<2>() > error) {
     return Verdict::separated;
   }
   double crossed = -infinity;
-  double least_sine = infinity;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      const double f = edges(s, i, j);
-      if (f > error) {
-        return Verdict::separated;
-      }
-      crossed = std::max(crossed, f);
-    }
+  const bool apart = any_edge_pair([&]<int I, int J>() {
+    const double f = p.edges<I, J>();
+    crossed = std::max(crossed, f);
+    return f > error;
+  });
+  if (apart) {
+    return Verdict::separated;
   }
+  const double faces = std::max(
+      {p.face_a<0>(), p.face_a<1>(), p.face_a<2>(), p.face_b<0>(), p.face_b<1>(), p.face_b<2>()});
   if (faces >= -error) {
     return Verdict::undecided;
   }
@@ -187,13 +193,13 @@ Verdict classify(const RelativeBoxes& s) {
   // Some edge pair cannot tell. Were two edges exactly parallel, the six faces alone would decide:
   // the cross-sections are rectangles. Turning b by the small angle between them moves its support
   // and the separations by less than 4 sine * size, so faces that overlap by more decide still.
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      least_sine = std::min(least_sine, edge_length(s, i, j));
-    }
-  }
+  double least = infinity;
+  any_edge_pair([&]<int I, int J>() {
+    least = std::min(least, p.sine_squared<I, J>());
+    return false;
+  });
   const double size = s.d_A.lpNorm<1>() + s.half_a.sum() + s.half_b.sum();
-  const double moved = 4.0 * (least_sine + 16.0 * unit_roundoff) * size;
+  const double moved = 4.0 * (std::sqrt(least) + 16.0 * unit_roundoff) * size;
   return moved < -faces - error ? Verdict::overlapping : Verdict::undecided;
 }
 
