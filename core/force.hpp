@@ -20,6 +20,7 @@ struct BodyInertia {
   double mass = 0.0;                    ///< kg, > 0
   Vector3 principal = Vector3::Zero();  ///< principal moments in body axes, kg m^2
   bool rotates = false;                 ///< false: orientation is not integrated at all
+  double bounding_radius = 0.0;         ///< of its shape about its origin, m
 };
 
 /// Port: a force that depends on the state or on time (drag, spring, Magnus). Constant forces are

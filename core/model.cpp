@@ -134,8 +134,9 @@ void Model::choose_rotation() {
     const bool could = is_free(i) && (b.entity->rotates() || is_sphere(shape(i)));
     const bool matters = is_free(i) && b.entity->rotates() && !is_sphere(shape(i));
     rotates_.push_back(options_.leave_out_orientation ? matters : could);
-    inertia_.push_back(
-        {is_free(i) ? b.mass : -1.0, is_free(i) ? b.inertia : Vector3::Zero().eval(), rotates_[i]});
+    inertia_.push_back({is_free(i) ? b.mass : -1.0,
+                        is_free(i) ? b.inertia : Vector3::Zero().eval(), rotates_[i],
+                        is_free(i) ? bounding_radius(shape(i)) : 0.0});
     if (is_free(i) && !rotates_[i]) {
       tally.add(
           "orientation is left out", b.name,
@@ -181,7 +182,21 @@ void Model::choose_pairs() {
                          : fmt::format("{} cannot do anything to each other: neither moves freely, "
                                        "or a field would act on what does not",
                                        left_out)},
-          {"broad phase", std::string(broad_phase_), "finds which of these pairs are near"}});
+          choose_broad_phase()});
+}
+
+/// Looking neighbours up costs more than asking every pair until there are some tens of bodies.
+Decision Model::choose_broad_phase() {
+  constexpr std::size_t few = 24;
+  if (!options_.broad_phase.empty()) {
+    broad_phase_ = options_.broad_phase;
+    return {"broad phase", std::string(broad_phase_), "it was asked for"};
+  }
+  broad_phase_ = size() <= few ? "all-pairs" : "dynamic-tree";
+  return {"broad phase", std::string(broad_phase_),
+          fmt::format("{} bodies: {}", size(),
+                      size() <= few ? "asking every pair costs least"
+                                    : "an impact must not cost work over all of them")};
 }
 
 /// What must be integrated together.

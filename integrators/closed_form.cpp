@@ -3,73 +3,99 @@
 #include "integrators/accelerations.hpp"
 #include "integrators/constant_force.hpp"
 #include "integrators/dense_output.hpp"
+#ifdef KAIROS_WITH_GSL
+#include "integrators/gsl/free_top.hpp"
+#endif
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace kairos::integrators {
 namespace {
 
-bool is_spherical(const Vector3& moments) {
-  return moments.x() == moments.y() && moments.y() == moments.z();
+/// How one body moves in the current step.
+struct Leg {
+  BodyState before;
+  Vector3 acceleration = Vector3::Zero();
+  bool rotates = false;
+  bool tumbles = false;          ///< its angular velocity is not constant
+  double bounding_radius = 0.0;  ///< m
+#ifdef KAIROS_WITH_GSL
+  FreeTop top;
+#endif
+};
+
+/// Steady: what the gyroscopic term changes is roundoff of the rate itself (about a principal
+/// axis).
+bool is_steady(const BodyInertia& inertia, const BodyState& state) {
+  const double w = state.twist.angular.norm();
+  const double change = angular_acceleration(inertia, state, Vector3::Zero()).norm();
+  return change <= 16.0 * std::numeric_limits<double>::epsilon() * w * w;
 }
 
 class ClosedForm final : public Stepper {
  public:
   [[nodiscard]] StepperInfo info() const override { return closed_form_info; }
-  [[nodiscard]] std::int64_t evaluations() const override { return accelerations_.evaluations(); }
+  [[nodiscard]] std::int64_t evaluations() const override { return evaluations_; }
 
   [[nodiscard]] std::string refuses(const Island& island) const override {
     if (!island.constant_acceleration()) {
       return "closed-form needs constant forces; this island has forces that depend on state or "
              "time";
     }
-    for (const BodyInertia& inertia : island.inertia) {
-      if (inertia.rotates && !is_spherical(inertia.principal)) {
-        return "closed-form turns bodies of equal principal moments of inertia only";
-      }
-    }
     return {};
   }
 
-  void start(const Island& /*island*/, Instant t, std::span<const BodyState> states) override {
-    accelerations_.resize(states.size());
-    current_.assign(states.size(), {});
-    before_.assign(states.begin(), states.end());
-    rotates_.assign(states.size(), false);
-    start_ = t;
-    h_ = 0.0;
+  void start(const Island& island, Instant t, std::span<const BodyState> states) override {
+    legs_.assign(states.size(), {});
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      legs_[i].rotates = island.inertia[i].rotates;
+      legs_[i].bounding_radius = island.inertia[i].bounding_radius;
+    }
+    restart(island, t, states);
   }
-  // Every step starts from the states alone.
+
   void restart(const Island& /*island*/, Instant /*t*/,
-               std::span<const BodyState> /*states*/) override {}
+               std::span<const BodyState> /*states*/) override {
+    fresh_ = true;
+  }
 
   StepResult step(const Island& island, Instant t, double h, std::span<BodyState> states) override {
-    accelerations_.evaluate(island, t, states, current_);
-    for (std::size_t i = 0; i < states.size(); ++i) {
-      before_[i] = states[i];
-      rotates_[i] = island.inertia[i].rotates;
-      if (std::isfinite(h)) {
-        advance(current_[i].linear, rotates_[i], h, states[i]);
+    ++evaluations_;
+    if (fresh_) {
+      if (const std::string_view reason = begin(island, t, states); !reason.empty()) {
+        return {.advanced = 0.0, .error = 0.0, .ok = false, .reason = reason};
       }
     }
     start_ = t;
-    h_ = h;
-    return {.advanced = h, .error = 0.0, .ok = true, .reason = {}};
+    h_ = std::min(h, longest_);
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      Leg& leg = legs_[i];
+      leg.before = states[i];
+      leg.acceleration = island.constant_force[i] / island.inertia[i].mass;
+      if (std::isfinite(h_)) {
+        advance(leg, states[i]);
+      }
+    }
+    return {.advanced = h_, .error = 0.0, .ok = true, .reason = {}};
   }
 
   void dense_output(std::span<Motion> motions) const override {
     for (std::size_t i = 0; i < motions.size(); ++i) {
+      const Leg& leg = legs_[i];
       Motion& motion = motions[i];
       motion.start = start_;
       motion.duration = h_;
       motion.error_radius = 0.0;
-      const BodyState& before = before_[i];
-      parabola(motion, before.pose.position, before.twist.linear, current_[i].linear);
-      if (rotates_[i]) {
-        constant_rate_rotation(motion, before.pose.orientation, before.twist.angular);
+      parabola(motion, leg.before.pose.position, leg.before.twist.linear, leg.acceleration);
+      const Quaternion& q = leg.before.pose.orientation;
+      if (!leg.rotates) {
+        fixed_rotation(motion, q);
+      } else if (!leg.tumbles) {
+        constant_rate_rotation(motion, q, leg.before.twist.angular);
       } else {
-        fixed_rotation(motion, before.pose.orientation);
+        tumble(leg, motion);
       }
     }
   }
@@ -80,24 +106,66 @@ class ClosedForm final : public Stepper {
   }
 
  private:
-  static void advance(const Vector3& a, bool rotates, double h, BodyState& state) {
+  // The constants of free rotation, from here until the next jump of the state; or why there are
+  // none.
+  std::string_view begin(const Island& island, Instant t, std::span<const BodyState> states) {
+    epoch_ = t;
+    longest_ = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      Leg& leg = legs_[i];
+      leg.tumbles = leg.rotates && !is_steady(island.inertia[i], states[i]);
+      if (leg.tumbles) {
+#ifdef KAIROS_WITH_GSL
+        leg.top = FreeTop(island.inertia[i].principal, states[i].pose.orientation,
+                          states[i].twist.angular);
+        if (!leg.top.resolved()) {
+          return "closed-form: a body turns about its middle axis but for less than doubles "
+                 "resolve";
+        }
+        longest_ = std::min(longest_, leg.top.segment());
+#else
+        return "closed-form: a tumbling body needs elliptic functions, and this build has no GSL";
+#endif
+      }
+    }
+    fresh_ = false;
+    return {};
+  }
+
+  void advance(const Leg& leg, BodyState& state) const {
     for (int axis = 0; axis < 3; ++axis) {
       const Coordinate<DoubleDouble> end = parabola_step<DoubleDouble>(
-          state.pose.position[axis], state.twist.linear[axis], a[axis], h);
+          state.pose.position[axis], state.twist.linear[axis], leg.acceleration[axis], h_);
       state.pose.position[axis] = end.position.rounded();
       state.twist.linear[axis] = end.velocity.rounded();
     }
-    if (rotates) {
-      state.pose.orientation = rotate(state.twist.angular * h, state.pose.orientation);
+    if (leg.tumbles) {
+#ifdef KAIROS_WITH_GSL
+      const FreeTop::Rotation rotation = leg.top.at((start_ + h_) - epoch_);
+      state.pose.orientation = rotation.orientation;
+      state.twist.angular = rotation.angular_velocity;
+#endif
+    } else if (leg.rotates) {
+      state.pose.orientation = rotate(state.twist.angular * h_, state.pose.orientation);
     }
   }
 
-  Accelerations accelerations_;
-  std::vector<Acceleration> current_;
-  std::vector<BodyState> before_;
-  std::vector<char> rotates_;
-  Instant start_;
+  // Two unit quaternions e apart turn a point at distance r to places at most 2 r e apart; another
+  // factor of 2 normalises the polynomial; 64 eps covers the rounding of its nodes.
+  void tumble([[maybe_unused]] const Leg& leg, [[maybe_unused]] Motion& motion) const {
+#ifdef KAIROS_WITH_GSL
+    leg.top.fit(start_ - epoch_, h_, motion);
+    motion.error_radius = leg.bounding_radius * (4.0 * leg.top.fit_error(h_) +
+                                                 64.0 * std::numeric_limits<double>::epsilon());
+#endif
+  }
+
+  std::vector<Leg> legs_;
+  Instant epoch_, start_;
   double h_ = 0.0;
+  double longest_ = std::numeric_limits<double>::infinity();  ///< s, of a step
+  bool fresh_ = true;
+  std::int64_t evaluations_ = 0;
 };
 
 }  // namespace

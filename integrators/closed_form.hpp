@@ -6,7 +6,11 @@ namespace kairos::integrators {
 
 /// The exact motion under constant forces: one `Motion` for any step, infinite steps included (the
 /// states are then left where they are: they have no end). Translation is a parabola; a body turns
-/// at a constant rate if its inertia is spherical or it turns about a principal axis.
+/// at a constant rate if its moments of inertia are equal or it turns about a principal axis.
+///
+/// A body that tumbles turns as Jacobi's elliptic functions do [vanZon2007], in segments of a
+/// fraction of a turn: quaternion polynomials with a proven error radius, so steps are shorter than
+/// asked for. That needs GSL; without it the step fails and says so.
 ///
 /// The end of a finite step is evaluated in double-double and rounded once, so that energy does
 /// not drift by the rounding of the parabola.

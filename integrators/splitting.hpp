@@ -14,7 +14,7 @@ namespace kairos::integrators {
 ///                        [Forest1990], [Yoshida1990]
 ///   suzuki4              five, with steps w, w, 1 - 4w, w, w; w = 1/(4 - 4^(1/3)): order 4, with
 ///   an
-///                        error constant some 20 times smaller [Suzuki1990]
+///                        error some 60 times smaller on a Kepler orbit [Suzuki1990]
 ///
 /// Forces without a potential (drag) are refused: the order and the structure would be lost.
 inline constexpr StepperInfo free_top_splitting_info{.name = "free-top-splitting",

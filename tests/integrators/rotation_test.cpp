@@ -1,7 +1,10 @@
 #include "integrators/catalogue.hpp"
+#include "integrators/closed_form.hpp"
+#include "integrators/dormand_prince.hpp"
 #include "integrators/splitting.hpp"
 #include "integrators/top_splitting.hpp"
 #include "tests/catch.hpp"
+#include "tests/integrators/problems.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -76,6 +79,109 @@ TEST_CASE(
   CHECK(coarse.energy <= 1.1 * short_run.energy);
   const Drifts fine = run_free_top(*stepper, 100.0, 0.01);
   CHECK(fine.energy == Approx(short_run.energy / 4.0).epsilon(0.05));
+}
+
+TEST_CASE("The exact solution keeps momentum and energy of a flipping box within 1e-12 for 1e4 s") {
+  const std::unique_ptr<Stepper> stepper = make_closed_form({});
+  std::vector<BodyState> states{flipping_state()};
+  const Island island = flipping_box();
+  stepper->start(island, Instant{}, states);
+  if (!stepper->step(island, Instant{}, 1.0, states).ok) {
+    return;  // a build without GSL
+  }
+  const Drifts drifts = run_free_top(*stepper, 1e4, 10.0);
+  CHECK(drifts.flips > 400);
+  CHECK(drifts.momentum <= 1e-12);
+  CHECK(drifts.energy <= 1e-12);
+}
+
+TEST_CASE("The exact solution of a free top agrees with the extrapolated one, fit bound included") {
+  const Problem& problem = free_top();
+  const std::unique_ptr<Stepper> stepper = make_closed_form({});
+  Island island = problem.island;
+  island.inertia[0].bounding_radius = 1.0;
+  std::vector<BodyState> states{problem.initial};
+  std::vector<Motion> motions(1);
+  stepper->start(island, Instant{}, states);
+  Instant t;
+  std::size_t sample = 0;
+  while (problem.duration - t.seconds > 1e-12) {
+    const StepResult result = stepper->step(island, t, problem.duration - t.seconds, states);
+    if (!result.ok) {
+      return;  // a build without GSL
+    }
+    stepper->dense_output(motions);
+    for (; sample < problem.times.size() && problem.times[sample] <= t.seconds + result.advanced;
+         ++sample) {
+      const double s = problem.times[sample] - t.seconds;
+      const BodyState& truth = problem.solution[sample];
+      const Quaternion q = motions[0].pose(s).orientation;
+      // Roundoff of elliptic functions and of the reference's double, a few turns in.
+      CHECK(2.0 * (q.conjugate() * truth.pose.orientation).vec().norm() <= 5e-13);
+      CHECK((motions[0].twist(s).angular - truth.twist.angular).norm() <= 2e-12);
+    }
+    CHECK(motions[0].error_radius > 0.0);
+    CHECK(motions[0].error_radius < 1e-12);
+    t = t + result.advanced;
+  }
+  CHECK(sample >= problem.times.size() - 1);
+}
+
+TEST_CASE("Tops near and at the edges of the elliptic functions") {
+  // Symmetric, oblate and prolate; nearly steady about each axis; near the separatrix.
+  struct Case {
+    Vector3 principal, w;
+  };
+  const Case cases[] = {{{1, 1, 2}, {0.3, 0.4, 1.0}},           {{2, 2, 1}, {0.3, 0.4, 1.0}},
+                        {{2, 1, 1}, {0.3, 0.4, 1.0}},           {{1, 2, 3}, {1.0, 1e-6, 1e-6}},
+                        {{1, 2, 3}, {1e-6, 1e-6, 1.0}},         {{1, 2, 3}, {1e-4, 1.0, 1e-4}},
+                        {{3, 1, 2}, {-0.4, 0.7, -0.2}},         {{2, 3, 1}, {0.4, -0.7, -0.2}},
+                        {{1, 2, 3}, {std::sqrt(3.0), 1.0, 1.0}}};
+  for (const Case& c : cases) {
+    CAPTURE(c.principal.transpose(), c.w.transpose());
+    const Island island{.bodies = {0},
+                        .inertia = {{.mass = 1.0, .principal = c.principal, .rotates = true}},
+                        .constant_force = {Vector3::Zero()},
+                        .forces = {}};
+    BodyState initial;
+    initial.pose.orientation = Quaternion(0.5, -0.5, 0.5, 0.5);
+    initial.twist.angular = initial.pose.orientation * c.w;
+    std::vector<BodyState> exact{initial}, reference{initial};
+    const std::unique_ptr<Stepper> closed = make_closed_form({});
+    const std::unique_ptr<Stepper> dopri =
+        make_dopri5({.relative_tolerance = 1e-13, .absolute_tolerance = 1e-14});
+    const auto run = [&](Stepper& stepper, std::vector<BodyState>& states) {
+      stepper.start(island, Instant{}, states);
+      Instant t;
+      while (5.0 - t.seconds > 1e-12) {
+        const StepResult result = stepper.step(island, t, 5.0 - t.seconds, states);
+        if (!result.ok) {
+          return false;
+        }
+        t = t + result.advanced;
+      }
+      return true;
+    };
+    if (!run(*closed, exact)) {
+      return;  // a build without GSL
+    }
+    REQUIRE(run(*dopri, reference));
+    // The tolerance of the reference, gathered over its steps.
+    CHECK((exact[0].twist.angular - reference[0].twist.angular).norm() <= 1e-10);
+    CHECK((exact[0].pose.orientation.conjugate() * reference[0].pose.orientation).vec().norm() <=
+          1e-10);
+  }
+}
+
+TEST_CASE("A flip that hangs on roundoff is not foretold but refused with a reason") {
+  const Island island = flipping_box();
+  std::vector<BodyState> states(1);
+  states[0].twist.angular = {1e-9, 1.0, 1e-9};
+  const std::unique_ptr<Stepper> stepper = make_closed_form({});
+  stepper->start(island, Instant{}, states);
+  const StepResult result = stepper->step(island, Instant{}, 1.0, states);
+  CHECK(!result.ok);
+  CHECK(!result.reason.empty());
 }
 
 TEST_CASE("A body that turns about a principal axis keeps its rate, however it is stepped") {
