@@ -12,9 +12,10 @@ inline namespace core {
 /// Savings that can be switched off, to show that they change cost and not results.
 struct ModelOptions {
   bool leave_out_orientation =
-      true;                 ///< bodies that nothing can turn are not integrated in rotation
-  bool closed_form = true;  ///< parabolas instead of an integrator, where `auto` is asked
-  bool prune_pairs = true;  ///< pairs that can never interact are never tested
+      true;                      ///< bodies that nothing can turn are not integrated in rotation
+  bool closed_form = true;       ///< parabolas instead of an integrator, where `auto` is asked
+  bool prune_pairs = true;       ///< pairs that can never interact are never tested
+  std::string_view broad_phase;  ///< finds which of those are near; empty: the model chooses
 };
 
 using BodyPair = std::pair<BodyIndex, BodyIndex>;  ///< first < second
@@ -80,6 +81,7 @@ class Model {
   void choose_bodies();
   void choose_rotation();
   void choose_pairs();
+  [[nodiscard]] Decision choose_broad_phase();
   void choose_islands();
   void choose_motion();
   [[nodiscard]] bool keeps_constant_rate(BodyIndex i) const;

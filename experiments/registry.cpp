@@ -4,7 +4,9 @@
 #include "ccd/bisection.hpp"
 #include "ccd/certified.hpp"
 #include "ccd/conservative_advancement.hpp"
+#include "ccd/dynamic_tree.hpp"
 #include "ccd/sat.hpp"
+#include "ccd/sweep_and_prune.hpp"
 #include "ccd/swept_box.hpp"
 #include "core/error.hpp"
 #include "core/laws/newton_law.hpp"
@@ -114,13 +116,20 @@ IslandStepper find_integrator(std::string_view name, const StepperOptions& optio
 }
 
 std::span<const std::string_view> broad_phases() {
-  static constexpr std::array<std::string_view, 1> names{"all-pairs"};
+  static constexpr std::array<std::string_view, 3> names{"all-pairs", "sweep-and-prune",
+                                                         "dynamic-tree"};
   return names;
 }
 
 BroadPhaseFactory find_broad_phase(std::string_view name) {
   if (name == "all-pairs") {
-    return [](std::size_t bodies) { return ccd::make_all_pairs(bodies); };
+    return ccd::make_all_pairs;
+  }
+  if (name == "sweep-and-prune") {
+    return ccd::make_sweep_and_prune;
+  }
+  if (name == "dynamic-tree") {
+    return ccd::make_dynamic_tree;
   }
   unknown("broad phase", name, broad_phases());
 }
