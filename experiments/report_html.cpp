@@ -147,9 +147,9 @@ std::string summary_html(const std::string& folder, const std::string& sweep, st
 
 std::string overview_html(const std::string& folder, const std::vector<std::string>& sweeps) {
   static const std::vector<std::pair<std::string, std::string>> shown = {
-      {"max_penetration.max", "deepest / m"},
-      {"passed.mean", "went through"},
-      {"energy_error.max", "energy error"}};
+      {"max_penetration.max", "depth / m"},
+      {"passed.mean", "through"},
+      {"energy_error.max", "energy"}};
   std::vector<std::string> methods;
   std::map<std::string, std::string> cells;  // by method, sweep and metric
   for (const std::string& sweep : sweeps) {
@@ -165,7 +165,7 @@ std::string overview_html(const std::string& folder, const std::vector<std::stri
       }
     }
   }
-  std::string out = "<div class=\"scroll\"><table><thead><tr><th></th>";
+  std::string out = "<div class=\"scroll\"><table class=\"wide\"><thead><tr><th></th>";
   for (const std::string& sweep : sweeps) {
     out += fmt::format("<th class=\"group\" colspan=\"{}\">{}</th>", shown.size(), html(sweep));
   }
@@ -186,7 +186,11 @@ std::string overview_html(const std::string& folder, const std::vector<std::stri
     }
     out += "</tr>\n";
   }
-  return out + "</tbody></table></div>\n";
+  return out +
+         "</tbody></table></div>\n<p class=\"note\">Depth: the deepest penetration in a drawn "
+         "frame; "
+         "through: the fraction of runs in which the ball and the solid changed sides; energy: the "
+         "largest relative error, that is, energy that no physics accounts for.</p>\n";
 }
 
 }  // namespace kairos::experiments
