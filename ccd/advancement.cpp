@@ -2,6 +2,7 @@
 
 #include "ccd/closed_form.hpp"
 #include "ccd/contact_patch.hpp"
+#include "ccd/descent_answer.hpp"
 #include "ccd/relative_boxes.hpp"
 #include "ccd/roundoff.hpp"
 #include "ccd/separation_function.hpp"
@@ -70,20 +71,25 @@ class Advancement {
     }
   }
 
-  /// The longest step that is proven free of contact.
+  /// A step that is proven free of contact: along the witness that turns with the bodies and, where
+  /// turning and not approach is what limits that, also along one that stays.
   double safe_step(double horizon) const {
-    double step = SeparationFunction(motion_, k_, turn_, witness_).advance(horizon);
-    if (witness_.frame == WitnessFrame::world && !motion_.turns_a() && !motion_.turns_b()) {
+    const SeparationFunction moving(motion_, k_, turn_, witness_);
+    double step = moving.advance(horizon);
+    const bool turns = motion_.turns_a() || motion_.turns_b();
+    if (!turns || step >= horizon) {
       return step;
     }
-    if (step < horizon) {
-      const Witness balls = between_balls(kind_, motion_, k_);
-      if (balls.gap > 0.0) {
-        step = std::max(step, SeparationFunction(motion_, k_, turn_, balls).advance(horizon));
-      }
+    const double closing = -moving.rate();
+    if (closing > 0.0 && 2.0 * step * closing > witness_.gap) {
+      return step;
     }
-    if (step < horizon && witness_.frame != WitnessFrame::world &&
-        !(kind_ == PairKind::box_plane || kind_ == PairKind::sphere_plane)) {
+    const Witness balls = between_balls(kind_, motion_, k_);
+    if (balls.gap > 0.1 * witness_.gap) {
+      step = std::max(step, SeparationFunction(motion_, k_, turn_, balls).advance(horizon));
+    }
+    const bool plane = kind_ == PairKind::box_plane || kind_ == PairKind::sphere_plane;
+    if (step < horizon && witness_.frame != WitnessFrame::world && !plane) {
       Witness still = witness_;
       still.frame = WitnessFrame::world;
       step = std::max(step, SeparationFunction(motion_, k_, turn_, still).advance(horizon));
@@ -308,9 +314,18 @@ bool Advancement::finish(double t_lo, double t_hi) {
   answer_.t_lo = t_lo;
   answer_.t_hi = t_hi;
   answer_.evaluations = evaluations_;
-  retreat_from_overlap(a_, b_, window_, answer_);
-  if (answer_.t_lo != k_.t) {
-    look(answer_.t_lo);
+  if (k_.t != t_lo) {
+    look(t_lo);
+  }
+  // Whoever evaluates the poses sees absolute coordinates, each rounded: a gap within 32 u of them
+  // may look like an overlap.
+  const double coordinates = a_.motion.position(start_of(a_.motion, window_) + t_lo).lpNorm<1>() +
+                             k_.d.lpNorm<1>() + motion_.radius_a() + motion_.radius_b();
+  if (witness_.gap - k_.error / witness_.length <= 64.0 * u * coordinates) {
+    retreat_from_overlap(a_, b_, window_, answer_);
+    if (answer_.t_lo != k_.t) {
+      look(answer_.t_lo);
+    }
   }
   answer_.normal = witness_.n / witness_.length;
   answer_.gap = std::max(0.0, witness_.gap - k_.error / witness_.length);
@@ -321,7 +336,7 @@ bool Advancement::finish(double t_lo, double t_hi) {
 /// Where the shapes are nearest, along the witness.
 void Advancement::nearest_points() {
   const Vector3& n = answer_.normal;
-  const Vector3 origin_a = motion_.pose_a(answer_.t_lo).position;
+  const Vector3 origin_a = a_.motion.position(start_of(a_.motion, window_) + answer_.t_lo);
   if (kind_ == PairKind::box_box) {
     const RelativeBoxes boxes(motion_.half_a(), k_.R_WA, motion_.half_b(), k_.R_WB, k_.d);
     const ContactPatch patch = contact_patch(boxes, greatest_separation(boxes));

@@ -33,6 +33,20 @@ RoundedBox rounded_box(const Shape& shape) {
 
 bool is_identity(const Vector4& q) { return q[1] == 0.0 && q[2] == 0.0 && q[3] == 0.0; }
 
+/// Rotation of a body that turns at a constant rate for a short angle: as Motion::orientation, with
+/// |w| known.
+Quaternion turned_by(const Motion& motion, double rate, double s) {
+  const double half = 0.5 * rate * s;
+  if (!(std::abs(half) < 2.0)) {
+    return motion.orientation(s);  // keeps the precision of many turns
+  }
+  const Vector3& w = motion.angular_velocity[0];
+  const Vector4& c = motion.quaternion[0];
+  const double k = std::sin(half) / rate;
+  return Quaternion(std::cos(half), k * w.x(), k * w.y(), k * w.z()) *
+         Quaternion(c[0], c[1], c[2], c[3]);
+}
+
 /// The rate of turn that the quaternion polynomial itself has (the motion's own polynomial for the
 /// angular velocity may be a better approximation of something else): w = 2 Im(Q' Q*) / |Q|^2.
 Vector3 rate_of_turn(const Motion& motion, double s) {
@@ -41,6 +55,21 @@ Vector3 rate_of_turn(const Motion& motion, double s) {
   const Vector3 q_vector(q[1], q[2], q[3]);
   const Vector3 r_vector(r[1], r[2], r[3]);
   return (2.0 / q.squaredNorm()) * (q[0] * r_vector - r[0] * q_vector - r_vector.cross(q_vector));
+}
+
+void orient(const Motion& motion, double rate, double s, bool turns, Matrix3& R, Vector3& w) {
+  if (turns && motion.rotation == RotationKind::constant_rate && rate > 0.0) {
+    R = rotation_matrix(turned_by(motion, rate, s));
+    w = motion.angular_velocity[0];
+    return;
+  }
+  R = rotation_matrix(motion.orientation(s));
+  if (!turns) {
+    w.setZero();
+  } else {
+    w = motion.rotation == RotationKind::polynomial ? rate_of_turn(motion, s)
+                                                    : Vector3(motion.angular_velocity[0]);
+  }
 }
 
 /// Upper bound of |p| on [s0, s1] by its Bernstein coefficients, or of |p - p(s0)|.
@@ -139,6 +168,7 @@ PairMotion::PairMotion(const MovingShape& a, const MovingShape& b, const Window&
       rotation_error_ += is_identity(motion.quaternion[0]) ? 0.0 : 8.0 * u;
     } else if (motion.rotation == RotationKind::constant_rate) {
       rotation_error_ += 24.0 * u;
+      (second ? rate_b_ : rate_a_) = motion.angular_velocity[0].norm();
       if (s != 0.0) {  // s + t is rounded
         const double rate = motion.angular_velocity[0].norm();
         rotation_error_ += 2.0 * u * rate * std::abs(s);
@@ -154,17 +184,6 @@ PairMotion::PairMotion(const MovingShape& a, const MovingShape& b, const Window&
       }
       rotation_error_ += (24.0 + 8.0 * degree) * u * std::max(1.0, size);
     }
-  }
-}
-
-void PairMotion::orient(const Motion& motion, double s, bool turns, Matrix3& R, Vector3& w) const {
-  R = rotation_matrix(motion.orientation(s));
-  if (!turns) {
-    w.setZero();
-  } else if (motion.rotation == RotationKind::polynomial) {
-    w = rate_of_turn(motion, s);
-  } else {
-    w = motion.angular_velocity[0];
   }
 }
 
@@ -189,12 +208,12 @@ void PairMotion::evaluate(double t, Kinematics& k) const {
   k.v = v;
   k.c = c;
   if (oriented_a_) {
-    orient(*motion_a_, s_a_ + t, turns_a_, k.R_WA, k.w_a);
+    orient(*motion_a_, rate_a_, s_a_ + t, turns_a_, k.R_WA, k.w_a);
   } else {
     k.w_a.setZero();
   }
   if (oriented_b_) {
-    orient(*motion_b_, s_b_ + t, turns_b_, k.R_WB, k.w_b);
+    orient(*motion_b_, rate_b_, s_b_ + t, turns_b_, k.R_WB, k.w_b);
   } else {
     k.w_b.setZero();
   }

@@ -57,16 +57,14 @@ class PairMotion {
   /// Upper bound of the speed of any point of b against any point of a on [t, t + horizon], m/s.
   [[nodiscard]] double speed_bound(const Kinematics& k, const TurnBounds& turn,
                                    double horizon) const;
-  [[nodiscard]] Pose pose_a(double t) const { return motion_a_->pose(s_a_ + t); }
-  [[nodiscard]] Pose pose_b(double t) const { return motion_b_->pose(s_b_ + t); }
 
  private:
-  void orient(const Motion& motion, double s, bool turns, Matrix3& R, Vector3& w) const;
-
   const Motion* motion_a_;
   const Motion* motion_b_;
   double s_a_;  ///< local time of a at the start of the window
   double s_b_;
+  double rate_a_ = 0.0;  ///< of a constant turn, rad/s
+  double rate_b_ = 0.0;
   double duration_;
   Vector3 half_a_ = Vector3::Zero();
   Vector3 half_b_ = Vector3::Zero();

@@ -91,9 +91,14 @@ void SeparationFunction::along_frame(const Vector3& w) {
       const double relative_speed = speed + w_frame;
       return relative_speed * relative_speed + w_frame * speed + alpha + alpha_frame;
     }
-    const double drift = in_world ? 0.0 : w.cross(relative).norm();
-    const double size = relative.norm();
-    return drift > 0.0 ? size * size + drift : size * g.norm();
+    const double size_squared = relative.squaredNorm();
+    if (!in_world) {
+      const double drift_squared = w.cross(relative).squaredNorm();
+      if (drift_squared > 0.0) {
+        return size_squared + std::sqrt(drift_squared);
+      }
+    }
+    return std::sqrt(size_squared * g.squaredNorm());
   };
   double bend = 0.0;
   if (motion_.radius_a() > 0.0 && moves_a) {
