@@ -1,6 +1,6 @@
 #include "integrators/catalogue.hpp"
+#include "tests/allocations.hpp"
 #include "tests/catch.hpp"
-#include "tests/integrators/allocations.hpp"
 #include "tests/integrators/problems.hpp"
 
 #include <cmath>
@@ -239,7 +239,7 @@ TEST_CASE("Steps and dense output do not allocate") {
       std::vector<Motion> motions(1);
       stepper.start(problem->island, Instant{}, states);
       stepper.step(problem->island, Instant{}, 0.001, states);
-      const std::size_t before = allocations();
+      const std::size_t before = kairos::test::allocations();
       Instant t = Instant{} + 0.001;
       for (int k = 0; k < 10; ++k) {
         const StepResult result = stepper.step(problem->island, t, 0.001, states);
@@ -247,7 +247,7 @@ TEST_CASE("Steps and dense output do not allocate") {
         stepper.dense_output(motions);
         stepper.restart(problem->island, t, states);
       }
-      CHECK(allocations() == before);
+      CHECK(kairos::test::allocations() == before);
     });
   }
 }

@@ -2,9 +2,9 @@
 
 #include <cstddef>
 
-namespace kairos::integrators::test {
+namespace kairos::test {
 
 /// How often this program has called `operator new` so far.
 [[nodiscard]] std::size_t allocations();
 
-}  // namespace kairos::integrators::test
+}  // namespace kairos::test

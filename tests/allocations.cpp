@@ -1,4 +1,4 @@
-#include "tests/integrators/allocations.hpp"
+#include "tests/allocations.hpp"
 
 #include <atomic>
 #include <cstdlib>
@@ -21,8 +21,8 @@ void* operator new(std::size_t size) {
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t /*size*/) noexcept { std::free(memory); }
 
-namespace kairos::integrators::test {
+namespace kairos::test {
 
 std::size_t allocations() { return count.load(); }
 
-}  // namespace kairos::integrators::test
+}  // namespace kairos::test
