@@ -176,8 +176,7 @@ class Advancement {
   /// No step is possible any more, whatever the gap: time itself has no finer grain.
   bool resolve_stuck() {
     witness_.gap = std::min(witness_.gap, k_.error);
-    resolve_contact();
-    return false;
+    return resolve_contact() ? false : undecided_until(motion_.duration());
   }
 
   /// Speed at which the gap closes along the witness, m/s.
@@ -371,8 +370,8 @@ double coordinate_size(const MovingShape& shape, const Window& window) {
 
 double default_tolerance(const MovingShape& a, const MovingShape& b, const Window& window) {
   const double extent = std::min(smallest_extent(a.shape), smallest_extent(b.shape));
-  // Roundoff: 32 u of the largest coordinate that the motions reach.
-  return 1e-9 * extent + 32.0 * u * (coordinate_size(a, window) + coordinate_size(b, window));
+  // Roundoff: 64 u of the largest coordinates that the motions reach.
+  return 1e-9 * extent + 64.0 * u * (coordinate_size(a, window) + coordinate_size(b, window));
 }
 
 TimeOfImpact advance_to_impact(const MovingShape& a, const MovingShape& b, const Window& window,

@@ -30,6 +30,11 @@ namespace kairos::ccd {
   if (descent.kind == Descent::none || descent.t_lo > duration) {
     return toi;
   }
+  if (!(descent.t_lo >= 0.0)) {  // not a number: overflow inside a motion decides nothing
+    toi.status = ToiStatus::undecided;
+    toi.t_lo = 0.0;
+    return toi;
+  }
   toi.t_lo = descent.t_lo;
   toi.t_hi = std::min(descent.t_hi, duration);
   switch (descent.kind) {

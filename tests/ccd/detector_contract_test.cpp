@@ -171,6 +171,16 @@ TEST_CASE("bisection misses a grazed corner, certified does not", "[ccd][contrac
   CHECK(q.ask(*ccd::make_bisection()).status == ToiStatus::separated);
 }
 
+TEST_CASE("what is not a number decides nothing and ends", "[ccd][contract]") {
+  const auto certified = ccd::make_certified();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const ShapeKinds kinds : shape_kinds) {
+    Query q = random_query(Difficulty::turning, kinds, 1);
+    q.motion_a.position[1].x() = nan;
+    CHECK(q.ask(*certified).status == ToiStatus::undecided);
+  }
+}
+
 TEST_CASE("windows may be infinite", "[ccd][contract]") {
   const Motion floor = Motion::at_rest({}, pose(zero));
   const Motion up = Motion::ballistic({}, inf, pose({0, 3, 0}), {{0, 1, 0}, zero}, zero);
