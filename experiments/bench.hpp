@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace kairos::experiments {
+
+/// One of several that do comparable work.
+struct Contender {
+  std::string name;
+  /// Does the work once and returns how many units (steps, impacts, queries) it did.
+  std::function<std::int64_t()> work;
+};
+
+struct Timing {
+  std::string name;
+  double nanoseconds = 0.0;  ///< per unit, the least of all rounds
+  std::int64_t units = 0;    ///< of one round
+};
+
+/// Times all contenders in turn, `rounds` times, in one process: what disturbs the machine disturbs
+/// all of them. The least is kept: disturbances only ever add time.
+[[nodiscard]] std::vector<Timing> race(const std::vector<Contender>& contenders, int rounds);
+
+/// The table of a race on stdout, each beside its ratio to the first.
+void print_race(const std::string& title, const std::string& unit,
+                const std::vector<Timing>& timings);
+
+/// Stepping: `original` beside a bare loop and ODE, `event-driven` by the impact.
+void bench_stepping(int rounds);
+/// Queries: overlap and time of impact of boxes, beside FCL and Bullet.
+void bench_queries(int rounds);
+
+}  // namespace kairos::experiments
