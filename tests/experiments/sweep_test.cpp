@@ -53,7 +53,8 @@ log = { from = 0.001, to = 0.01, count = 3 }
 )");
   REQUIRE(sweep.axes.size() == 3);
   CHECK(sweep.axes[0].values[1].number == 0.04);
-  CHECK(sweep.axes[0].values[2].toml == "\"text\"");
+  CHECK(sweep.axes[0].values[2].text == "text");
+  CHECK_FALSE(sweep.axes[0].values[2].number);
   CHECK(sweep.axes[1].values[2].number == 0.5);
   CHECK(sweep.axes[2].name == "radius");
   CHECK(sweep.axes[2].values[0].number == 0.001);
