@@ -134,9 +134,8 @@ void Model::choose_rotation() {
     const bool could = is_free(i) && (b.entity->rotates() || is_sphere(shape(i)));
     const bool matters = is_free(i) && b.entity->rotates() && !is_sphere(shape(i));
     rotates_.push_back(options_.leave_out_orientation ? matters : could);
-    inertia_.push_back({is_free(i) ? b.mass : -1.0,
-                        is_free(i) ? b.inertia : Vector3::Zero().eval(), rotates_[i],
-                        is_free(i) ? bounding_radius(shape(i)) : 0.0});
+    inertia_.push_back({is_free(i) ? b.mass : -1.0, is_free(i) ? b.inertia : Vector3::Zero().eval(),
+                        rotates_[i], is_free(i) ? bounding_radius(shape(i)) : 0.0});
     if (is_free(i) && !rotates_[i]) {
       tally.add(
           "orientation is left out", b.name,
