@@ -7,8 +7,9 @@ namespace kairos::ccd {
 namespace {
 
 /// Moves both ends of the bracket away from the root until the signs are proven. `earliest`: the
-/// gap is known to be positive from there to the root.
-FirstDescent rounded_outwards(const QuadraticGap& gap, double root, double earliest) {
+/// gap is known to be positive from there to the root; `latest`: it descends until there.
+FirstDescent rounded_outwards(const QuadraticGap& gap, double root, double earliest,
+                              double latest) {
   const double slope = std::abs(gap.rate(root));
   const double error = gap.error(root);
   const double margin = 2.0 * ulp(root) + (slope > 0.0 ? error / slope : 0.0);
@@ -17,7 +18,11 @@ FirstDescent rounded_outwards(const QuadraticGap& gap, double root, double earli
     wider *= 2.0;
     found.t_lo = std::max(earliest, root - wider);
   }
-  for (double wider = margin; std::isfinite(wider) && gap(found.t_hi) > -gap.error(found.t_hi);) {
+  if (found.t_lo == earliest && gap(earliest) > gap.error(earliest)) {
+    found.t_lo = last_proven(gap, earliest, root);
+  }
+  for (double wider = margin;
+       found.t_hi < latest && gap(found.t_hi) > -gap.error(found.t_hi) && std::isfinite(wider);) {
     wider *= 2.0;
     found.t_hi = root + wider;
   }
@@ -29,16 +34,17 @@ FirstDescent descent_of_convex(const QuadraticGap& gap) {
   const double lowest_at = -gap.c1 / (2.0 * gap.c2);
   const double discriminant = difference_of_products(gap.c1, gap.c1, 4.0 * gap.c0, gap.c2);
   const double lowest = -discriminant / (4.0 * gap.c2);
-  const double error = gap.error(lowest_at) + 2.0 * unit_roundoff * std::abs(lowest);
-  if (lowest > error) {
+  if (lowest > gap.error(lowest_at) + 2.0 * unit_roundoff * std::abs(lowest)) {
     return {Descent::none, 0.0, 0.0};
   }
-  if (lowest >= -error) {
-    // gap <= 2 error within sqrt(3 error / c2) of the lowest point.
-    const double half_width = std::sqrt(3.0 * error / gap.c2) + 2.0 * ulp(lowest_at);
-    return {Descent::grazing, std::max(0.0, lowest_at - half_width), lowest_at + half_width};
+  const double root =
+      discriminant > 0.0 ? 2.0 * gap.c0 / (-gap.c1 + std::sqrt(discriminant)) : lowest_at;
+  FirstDescent found = rounded_outwards(gap, root, 0.0, lowest_at);
+  if (!(found.t_hi < lowest_at) && !(gap(found.t_hi) < -gap.error(found.t_hi))) {
+    found.kind = Descent::grazing;
+    found.t_hi = std::max(found.t_hi, 2.0 * lowest_at - found.t_lo);
   }
-  return rounded_outwards(gap, 2.0 * gap.c0 / (-gap.c1 + std::sqrt(discriminant)), 0.0);
+  return found;
 }
 
 /// The gap opens downwards: exactly one descent, whatever the start.
@@ -50,7 +56,7 @@ FirstDescent descent_of_concave(const QuadraticGap& gap, bool in_touch) {
   const double root =
       gap.c1 > 0.0 ? -(gap.c1 + root_of) / (2.0 * gap.c2) : 2.0 * c0 / (-gap.c1 + root_of);
   const double apex = gap.c1 > 0.0 ? -gap.c1 / (2.0 * gap.c2) : 0.0;
-  return rounded_outwards(gap, root, apex);
+  return rounded_outwards(gap, root, apex, infinity);
 }
 
 }  // namespace
@@ -78,7 +84,7 @@ FirstDescent first_descent(const QuadraticGap& gap, double touch) {
     return {Descent::none, 0.0, 0.0};
   }
   if (gap.c2 == 0.0) {
-    return rounded_outwards(gap, -gap.c0 / gap.c1, 0.0);
+    return rounded_outwards(gap, -gap.c0 / gap.c1, 0.0, infinity);
   }
   return descent_of_convex(gap);
 }

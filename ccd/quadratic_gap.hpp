@@ -41,6 +41,21 @@ struct FirstDescent {
   double t_hi = 0.0;
 };
 
+/// The last time of [low, high] up to which `gap(t) > gap.error(t)` holds, by bisection, for a gap
+/// that is proven positive at `low` and descends. For brackets that rounding makes wide: grazes,
+/// and roots so far away that the errors of the coefficients have grown large.
+template <typename Gap>
+[[nodiscard]] double last_proven(const Gap& gap, double low, double high) {
+  for (int i = 0; i < 100; ++i) {
+    const double middle = low + 0.5 * (high - low);
+    if (!(middle > low && middle < high)) {
+      break;
+    }
+    (gap(middle) > gap.error(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
 /// First time t > 0 at which the gap descends through zero. The roots are those of the numerically
 /// stable formula with a compensated discriminant [Kahan2004], rounded outwards by two ulp and by
 /// what the errors of the coefficients amount to, until the signs at t_lo and t_hi are proven.

@@ -77,6 +77,9 @@ FirstDescent bracket(const DistanceGap& gap, double root, double limit) {
     found.t_lo = std::max(0.0, root - margin);
     margin *= 2.0;
   } while (found.t_lo > 0.0 && gap(found.t_lo) <= gap.error(found.t_lo));
+  if (found.t_lo == 0.0) {
+    found.t_lo = last_proven(gap, 0.0, root);
+  }
   margin = step;
   do {
     found.t_hi = std::min(limit, root + margin);
@@ -111,9 +114,8 @@ FirstDescent first_descent(const DistanceGap& gap, double touch) {
     return {Descent::none, 0.0, 0.0};
   }
   if (miss >= gap.reach - error) {
-    // The gap is below 3 error within sqrt(8 error reach) / speed of the nearest approach.
-    const double half_width = std::sqrt(8.0 * error * gap.reach) / speed + 2.0 * ulp(nearest_at);
-    return {Descent::grazing, std::max(0.0, nearest_at - half_width), nearest_at + half_width};
+    const double t_lo = last_proven(gap, 0.0, nearest_at);
+    return {Descent::grazing, t_lo, 2.0 * nearest_at - t_lo};
   }
   const double inwards = std::sqrt((gap.reach - miss) * (gap.reach + miss));
   double root = start * (start + 2.0 * gap.reach) / (-approach + speed * inwards);

@@ -60,9 +60,11 @@ inline std::string broken_promise(const Query& q, const TimeOfImpact& toi, int s
   if (toi.status == ToiStatus::overlapping) {
     return f(0) > e ? "not overlapping at the start" : "";
   }
-  // A start in touch is a contact that began before: what counts is from when they have left.
+  // A start in touch, to roundoff of doubles, is a contact that began before: what counts is from
+  // when they have left.
   Real from = 0;
-  while (f(from) <= e && from < toi.t_lo) {
+  const Real touch = f(0) <= 2048 * e ? 2048 * e : e;  // 2048 long double roundings are one of ours
+  while (f(from) <= touch && from < toi.t_lo) {
     from = from == 0 ? Real(1e-12) * q.duration : 2 * from;
   }
   if (from < toi.t_lo && least(f, from, toi.t_lo, samples) < -e) {
