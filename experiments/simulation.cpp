@@ -3,11 +3,11 @@
 #include "core/error.hpp"
 #include "experiments/penetration.hpp"
 #include "experiments/registry.hpp"
-#include "experiments/run_error.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 namespace kairos::experiments {
 namespace {
@@ -114,43 +114,58 @@ void refuse_overlap_at_start(const Model& model) {
   }
 }
 
-/// The last line of defence: NaN and infinity never travel.
+/// A run that has left the numbers.
+struct NotFinite {
+  BodyIndex body = 0;
+  Instant time;
+};
+
+/// The last line of defence: NaN and infinity never travel. Ends the run at the first of them, and
+/// remembers the last frame, which was whole.
 class FiniteGuard : public Recorder {
  public:
   explicit FiniteGuard(Recorder& inner) : inner_(inner) {}
 
-  void begin(const Model& model) override {
-    model_ = &model;
-    inner_.begin(model);
-  }
+  void begin(const Model& model) override { inner_.begin(model); }
   [[nodiscard]] bool wants_motions() const override { return inner_.wants_motions(); }
   void frame(const Frame& frame) override {
     for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
       check(frame.bodies[i], i, frame.time);
     }
+    last_.end = frame.time;
+    last_.state.assign(frame.bodies.begin(), frame.bodies.end());
+    last_.ledger = frame.ledger;
+    ++last_.cost.frames;
     inner_.frame(frame);
   }
   void motion(BodyIndex body, const Motion& motion) override { inner_.motion(body, motion); }
   void event(const Event& event) override {
     check(event.after_a, event.a, event.time);
     check(event.after_b, event.b, event.time);
+    ++last_.cost.events;
     inner_.event(event);
   }
   void stage(Stage stage, double fraction) override { inner_.stage(stage, fraction); }
 
+  /// The run up to its last frame. Of its cost, frames and events are known.
+  [[nodiscard]] RunResult stopped(std::string reason) && {
+    last_.status = RunStatus::stopped;
+    last_.reason = std::move(reason);
+    return std::move(last_);
+  }
+
  private:
-  void check(const BodyState& body, BodyIndex i, Instant t) const {
+  static void check(const BodyState& body, BodyIndex i, Instant t) {
     // x - x is 0 for finite x alone; sums keep what is not.
     const double sum = body.pose.position.sum() + body.pose.orientation.coeffs().sum() +
                        body.twist.linear.sum() + body.twist.angular.sum();
     if (!(sum - sum == 0.0)) {
-      throw RunError(
-          fmt::format("not finite: body.{} at t = {} s", model_->body(i).name, t.seconds));
+      throw NotFinite{i, t};
     }
   }
 
   Recorder& inner_;
-  const Model* model_ = nullptr;
+  RunResult last_;
 };
 
 }  // namespace
@@ -168,7 +183,12 @@ RunResult simulate(const Model& model, const RunChoice& choice, Recorder& record
   }
   refuse_overlap_at_start(model);
   FiniteGuard guard(recorder);
-  return plan.scheme->run(model, plan.method, plan.options, guard);
+  try {
+    return plan.scheme->run(model, plan.method, plan.options, guard);
+  } catch (const NotFinite& found) {
+    return std::move(guard).stopped(fmt::format("not finite: the state of '{}' at t = {} s",
+                                                model.body(found.body).name, found.time.seconds));
+  }
 }
 
 Simulation simulate(const Scene& scene, const RunChoice& choice) {

@@ -105,6 +105,29 @@ TEST_CASE("solids that start inside each other are refused, touching ones are no
   }
 }
 
+TEST_CASE("a run that leaves the numbers stops with a reason, and its last frame is whole",
+          "[simulation]") {
+  // Explicit Euler on a tumbling box with frames far too long: its spin explodes.
+  const Scene scene = parse_scene(R"(duration = 1e4
+frame = "1s"
+G = 0.0
+[[body]]
+name = "box"
+entity = "body"
+half_extents = [0.1, 0.2, 0.3]
+mass = 1.0
+angular_velocity = [3.0, 2.0, 1.0]
+)",
+                                  "tumble.toml");
+  const Simulation simulation =
+      simulate(scene, {.method = {.scheme = "original", .integrator = "explicit-euler"}});
+  CHECK(simulation.result.status == RunStatus::stopped);
+  CHECK(mentions(simulation.result.reason, "not finite"));
+  CHECK(mentions(simulation.result.reason, "box"));
+  CHECK(simulation.result.state[0].twist.angular.allFinite());
+  CHECK(simulation.result.state[0].pose.orientation.coeffs().allFinite());
+}
+
 TEST_CASE("metrics are what the drawn frames show", "[metrics]") {
   const Model model(drop());
   MetricsRecorder metrics;
