@@ -52,7 +52,7 @@ std::int64_t count_impacts(const ContactDetector& detector, const std::vector<Be
   for (const BenchPair& pair : pairs) {
     const TimeOfImpact toi =
         detector.time_of_impact({pair.a, pair.motion_a}, {pair.b, pair.motion_b}, {{}, 1.0}, 0.0);
-    count += toi.status == ToiStatus::impact ? 1 : 0;
+    count += toi.status != ToiStatus::separated ? 1 : 0;  // at the start already, too
   }
   return count;
 }

@@ -1,8 +1,10 @@
 #include "core/entity.hpp"
 #include "core/error.hpp"
 #include "experiments/commands.hpp"
+#include "experiments/experiment_library.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/scene_library.hpp"
+#include "experiments/sweep_spec.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -77,17 +79,24 @@ void list_scenes() {
   }
 }
 
+void list_experiments() {
+  for (const std::string& name : shipped_experiments()) {
+    fmt::print("  {:<24}{}\n", name, read_experiment(find_experiment(name), Size::quick).title);
+  }
+}
+
 struct Section {
   const char* name;
   void (*list)();
 };
-constexpr std::array<Section, 7> sections{{{"schemes", list_schemes},
+constexpr std::array<Section, 8> sections{{{"schemes", list_schemes},
                                            {"integrators", list_integrators},
                                            {"detectors", list_detectors},
                                            {"impact-laws", list_impact_laws},
                                            {"broad-phases", list_broad_phases},
                                            {"entities", list_entities},
-                                           {"scenes", list_scenes}}};
+                                           {"scenes", list_scenes},
+                                           {"experiments", list_experiments}}};
 
 }  // namespace
 

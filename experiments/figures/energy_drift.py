@@ -73,7 +73,8 @@ def apexes(data, figures):
     style.legend_below(figure, [panel], columns=4)
     figures.save(figure, "apex_heights",
                  "Height of each apex, the highest point between two impacts. An elastic ball should "
-                 "come back to where it was dropped, each time.")
+                 "come back to where it was dropped, each time. With symplectic Euler a ball that was "
+                 "reflected is still inside in the next frame, is turned back in, and sinks.")
 
 
 def ledger(data, figures):

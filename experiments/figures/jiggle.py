@@ -9,7 +9,7 @@ from data import pick, points, unique
 def draw(data, figures):
     figure, panels = plt.subplots(1, 2, figsize=(8.8, 3.6), sharey=False)
     for panel, sweep, x, label in (
-            (panels[0], "jitter", "jitter", "predicted: E[max(0, 1 − h₂/h₁)]"),
+            (panels[0], "jitter", "jitter", "predicted: E[max(0, 1 − (1+c) h₂/h₁)]"),
             (panels[1], "stalls", "stall", "predicted: p(1−p)(F−1)/(1−p+pF), F = 4")):
         rows = data.table(sweep, "summary")
         methods = unique(row["method"] for row in rows)
