@@ -53,7 +53,8 @@ struct Walk {
 Walk walk(const Model& model, const MethodChoice& method) {
   RunChoice choice;
   choice.method = method;
-  choice.duration = 0.1;  // s: a few frames of every scene
+  choice.duration = 0.1;          // s: a few frames of every scene
+  choice.stepper = {1e-5, 1e-5};  // so that controlled methods of order 2 take few steps too
   MetricsRecorder metrics;
   try {
     if (!why_refused(model, choice).empty()) {
