@@ -11,9 +11,13 @@ namespace {
 
 constexpr double u = unit_roundoff;
 
-/// First positive root of f + b h + c h^2, f > 0; infinity if there is none.
+/// First positive root of f + b h + c h^2, f > 0; infinity if there is none. Where a bound is
+/// infinite or the arithmetic overflows nothing is known: 0.
 double first_root(double f, double b, double c) {
   const double discriminant = b * b - 4.0 * f * c;
+  if (!std::isfinite(discriminant)) {
+    return 0.0;
+  }
   if (c < 0.0) {
     const double root = std::sqrt(discriminant);
     return b <= 0.0 ? 2.0 * f / (root - b) : -(b + root) / (2.0 * c);
@@ -252,7 +256,7 @@ double SeparationFunction::advance_from_touch(double horizon) const {
     const double second = curvature(reach);
     const double b = (count_ > 0 ? chord(reach) : slope_) - k_.rate_error;
     const double discriminant = b * b - 4.0 * start * second;
-    if (b > 0.0 && discriminant > 0.0) {
+    if (b > 0.0 && discriminant > 0.0 && std::isfinite(discriminant)) {
       const double end = second < 0.0 ? -(b + std::sqrt(discriminant)) / (2.0 * second) : reach;
       const double left = -2.0 * start / (b + std::sqrt(discriminant));
       const double h = std::min(end, reach);

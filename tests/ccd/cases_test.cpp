@@ -4,7 +4,7 @@
 #include "ccd/conservative_advancement.hpp"
 #include "ccd/relative_boxes.hpp"
 #include "tests/catch.hpp"
-#include "tests/ccd/queries.hpp"
+#include "tests/ccd/random_queries.hpp"
 
 #include <numbers>
 
@@ -560,4 +560,12 @@ TEST_CASE("case 43: impacts of two pairs at the same instant, in either order", 
   };
   CHECK(t(left) == t(right));
   CHECK(t(left) == exchanged(right));
+}
+
+TEST_CASE("an unbounded rate of turn is no licence to pass", "[ccd][cases]") {
+  // Over the whole window the quaternion cannot be bounded away from zero, so that the bound of the
+  // rate is infinite: steps must shrink until it is not. Found by the random queries.
+  const Query q = random_query(Difficulty::polynomial, {0, 1}, 2291);
+  CHECK(std::isinf(q.motion_b.angular_speed_bound(0.0, 1.0)));
+  CHECK(kept(q).status == ToiStatus::impact);
 }
