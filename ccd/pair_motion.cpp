@@ -246,14 +246,8 @@ TurnBounds PairMotion::bounds(double t, double horizon) const {
 }
 
 double PairMotion::total_turn() const {
-  double turn = 0.0;
-  if (turns_a_) {
-    turn += motion_a_->angular_speed_bound(s_a_, s_a_ + duration_);
-  }
-  if (turns_b_) {
-    turn += motion_b_->angular_speed_bound(s_b_, s_b_ + duration_);
-  }
-  return turn > 0.0 ? turn * duration_ : 0.0;
+  const double rate = rate_a_ + rate_b_;
+  return rate > 0.0 ? rate * duration_ : 0.0;
 }
 
 double PairMotion::speed_bound(const Kinematics& k, const TurnBounds& turn, double horizon) const {

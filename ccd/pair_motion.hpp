@@ -52,7 +52,8 @@ class PairMotion {
   void evaluate(double t, Kinematics& k) const;
   /// Bounds on [t, t + horizon] (cut at the end of the window).
   [[nodiscard]] TurnBounds bounds(double t, double horizon) const;
-  /// Upper bound of the angle that both turn through in the window together, rad.
+  /// Angle that both turn through in the window together at constant rates, rad (what a polynomial
+  /// turns through is not known beforehand; the budget of work bounds it).
   [[nodiscard]] double total_turn() const;
   /// Upper bound of the speed of any point of b against any point of a on [t, t + horizon], m/s.
   [[nodiscard]] double speed_bound(const Kinematics& k, const TurnBounds& turn,
