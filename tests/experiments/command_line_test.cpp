@@ -22,7 +22,7 @@ const std::vector<std::string> commands{"run", "explain", "list", "toi"};
 
 }  // namespace
 
-TEST_CASE("--help works everywhere and goes to stdout", "[cli]") {
+TEST_CASE("option --help works everywhere and goes to stdout", "[cli]") {
   const Outcome top = kairos_program({"--help"});
   CHECK(top.exit_code == 0);
   CHECK(top.err.empty());
@@ -36,7 +36,7 @@ TEST_CASE("--help works everywhere and goes to stdout", "[cli]") {
   }
 }
 
-TEST_CASE("--version names the version", "[cli]") {
+TEST_CASE("option --version names the version", "[cli]") {
   const Outcome outcome = kairos_program({"--version"});
   CHECK(outcome.exit_code == 0);
   CHECK(contains(outcome.out, "kairos 0."));
@@ -68,7 +68,7 @@ TEST_CASE("run prints a summary and exits with 0", "[cli]") {
   CHECK(contains(outcome.out, "t = 2.5 s"));
 }
 
-TEST_CASE("--thesis is the thesis' own method, and single choices win over it", "[cli]") {
+TEST_CASE("option --thesis is the thesis' own method, and single choices win over it", "[cli]") {
   const TemporaryFolder folder;
   const std::string scene = folder.file("drop.toml", drop_scene);
   const Outcome thesis = kairos_program({"run", scene, "--thesis"});
@@ -77,7 +77,7 @@ TEST_CASE("--thesis is the thesis' own method, and single choices win over it", 
   CHECK(contains(mixed.out, "original + thesis-euler (thesis-euler) + sat + newton"));
 }
 
-TEST_CASE("--set replaces a value of the scene", "[cli]") {
+TEST_CASE("option --set replaces a value of the scene", "[cli]") {
   const TemporaryFolder folder;
   const std::string scene = folder.file("drop.toml", drop_scene);
   const Outcome none = kairos_program({"run", scene, "--set", "body.ball.position=[0, 500, 0]"});
@@ -86,7 +86,7 @@ TEST_CASE("--set replaces a value of the scene", "[cli]") {
   CHECK(contains(none.out, "impacts               0"));
 }
 
-TEST_CASE("--frame takes a fraction, a unit, or a CSV of frame times", "[cli]") {
+TEST_CASE("option --frame takes a fraction, a unit, or a CSV of frame times", "[cli]") {
   const TemporaryFolder folder;
   const std::string scene = folder.file("drop.toml", drop_scene);
   const std::string times = folder.file("frames.csv", "duration\n0.5\n0.25\n");
