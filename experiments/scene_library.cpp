@@ -49,7 +49,7 @@ std::vector<std::string> shipped_scenes() {
 
 std::string find_scene(const std::string& path_or_name) {
   std::error_code error;
-  if (fs::exists(path_or_name, error)) {
+  if (fs::exists(path_or_name, error) && !fs::is_directory(path_or_name, error)) {
     return path_or_name;
   }
   const std::vector<std::string> names = shipped_scenes();
