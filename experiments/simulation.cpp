@@ -1,7 +1,7 @@
 #include "experiments/simulation.hpp"
 
 #include "core/error.hpp"
-#include "experiments/penetration.hpp"
+#include "experiments/metrics/penetration.hpp"
 #include "experiments/registry.hpp"
 
 #include <fmt/format.h>

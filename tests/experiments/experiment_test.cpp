@@ -1,12 +1,12 @@
 // The shipped experiments: their specs can be read and planned, and what one leaves is the same
 // twice.
 
-#include "experiments/experiment.hpp"
+#include "experiments/sweeps/experiment.hpp"
 
-#include "experiments/experiment_library.hpp"
 #include "experiments/parallel_for.hpp"
-#include "experiments/sweep_plan.hpp"
-#include "experiments/table.hpp"
+#include "experiments/sweeps/experiment_library.hpp"
+#include "experiments/sweeps/sweep_plan.hpp"
+#include "experiments/sweeps/table.hpp"
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
 

@@ -1,6 +1,6 @@
 // Expressions of sweep specs: what they compute, and what they say when they are wrong.
 
-#include "experiments/expression.hpp"
+#include "experiments/sweeps/expression.hpp"
 
 #include "tests/catch.hpp"
 

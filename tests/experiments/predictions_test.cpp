@@ -3,7 +3,7 @@
 
 #include "core/impact_law.hpp"
 #include "core/random.hpp"
-#include "experiments/metrics.hpp"
+#include "experiments/metrics/metrics.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/scene_library.hpp"
 #include "experiments/simulation.hpp"

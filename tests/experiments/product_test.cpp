@@ -1,9 +1,9 @@
 // The four choices are independent: every scheme with every integrator, detector and impact law on
 // every shipped scene runs, or is refused with a reason.
 
+#include "experiments/metrics/run_metrics.hpp"
 #include "experiments/parallel_for.hpp"
 #include "experiments/registry.hpp"
-#include "experiments/run_metrics.hpp"
 #include "experiments/scene_library.hpp"
 #include "experiments/simulation.hpp"
 #include "tests/catch.hpp"

@@ -1,10 +1,10 @@
 // The report: one page that needs nothing from outside its folder.
 
-#include "experiments/report.hpp"
+#include "experiments/report/report.hpp"
 
 #include "core/error.hpp"
-#include "experiments/experiment.hpp"
-#include "experiments/report_html.hpp"
+#include "experiments/report/report_html.hpp"
+#include "experiments/sweeps/experiment.hpp"
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
 

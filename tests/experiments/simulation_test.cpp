@@ -3,8 +3,8 @@
 #include "experiments/simulation.hpp"
 
 #include "core/error.hpp"
+#include "experiments/metrics/run_metrics.hpp"
 #include "experiments/registry.hpp"
-#include "experiments/run_metrics.hpp"
 #include "tests/catch.hpp"
 #include "tests/experiments/scenes.hpp"
 

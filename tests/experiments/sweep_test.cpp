@@ -1,11 +1,11 @@
 // Sweeps: a spec is read or refused with file, line and key; rows are the same for any number of
 // threads; nothing that fails is dropped.
 
-#include "experiments/sweep.hpp"
+#include "experiments/sweeps/sweep.hpp"
 
 #include "core/error.hpp"
-#include "experiments/experiment_library.hpp"
-#include "experiments/sweep_plan.hpp"
+#include "experiments/sweeps/experiment_library.hpp"
+#include "experiments/sweeps/sweep_plan.hpp"
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
 

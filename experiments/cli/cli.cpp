@@ -1,0 +1,103 @@
+#include "experiments/cli/cli.hpp"
+
+#include "core/error.hpp"
+#include "core/nearest_name.hpp"
+#include "experiments/cli/commands.hpp"
+#include "experiments/run_error.hpp"
+#include "experiments/version.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kairos::experiments {
+namespace {
+
+enum ExitCode { done = 0, run_failed = 1, input_wrong = 2 };
+
+int fail(ExitCode code, const char* message) {
+  std::cout.flush();
+  std::cerr << message << '\n';
+  return code;
+}
+
+/// What was printed counts only once it has left: a full disk shows here at the latest.
+int flush_results() {
+  errno = 0;
+  std::cout.flush();
+  const bool written = std::cout.good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  return written ? done
+                 : fail(run_failed,
+                        errno == 0 ? "standard output: cannot be written" : std::strerror(errno));
+}
+
+void add_commands(CLI::App& app) {
+  add_run_command(app);
+  add_explain_command(app);
+  add_list_command(app);
+  add_toi_command(app);
+  add_sweep_command(app);
+  add_experiment_command(app);
+  add_reproduce_command(app);
+  add_bench_command(app);
+}
+
+/// CLI11 only says that a command is missing where a person has mistyped one.
+void refuse_unknown_command(const CLI::App& app) {
+  const std::vector<std::string> words = app.remaining();
+  if (words.empty() || !app.get_subcommands().empty()) {
+    return;
+  }
+  std::vector<std::string_view> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.emplace_back(command->get_name());
+  }
+  throw InputError("", 0, words.front(),
+                   "is neither a command nor an option; " + suggestion(words.front(), names));
+}
+
+int parse_and_run(int argc, const char* const* argv) {
+  CLI::App app{"What happens between two frames, and what does it cost to know?", "kairos"};
+  app.set_version_flag("--version", "kairos " + std::string(version()));
+  app.require_subcommand(1);
+  app.footer("Exit codes: 0 done, 1 a run failed, 2 the input is wrong.");
+  add_commands(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::RequiredError& error) {
+    refuse_unknown_command(app);
+    return app.exit(error), input_wrong;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? flush_results() : input_wrong;
+  }
+  return flush_results();
+}
+
+}  // namespace
+
+int run_command_line(int argc, const char* const* argv) {
+  // A file that grows beyond its limit is an error of a write, to be told; not a sudden death.
+  std::signal(SIGXFSZ, SIG_IGN);
+  try {
+    return parse_and_run(argc, argv);
+  } catch (const InputError& error) {
+    return fail(input_wrong, error.what());
+  } catch (const RunError& error) {
+    return fail(run_failed, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(run_failed, "out of memory");
+  } catch (const std::exception& error) {
+    return fail(run_failed, error.what());
+  }
+}
+
+}  // namespace kairos::experiments

@@ -1,0 +1,34 @@
+#include "experiments/bench/bench.hpp"
+#include "experiments/cli/commands.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <memory>
+#include <string>
+
+namespace kairos::experiments {
+
+void add_bench_command(CLI::App& app) {
+  struct BenchCommand {
+    std::string name;
+    int rounds = 5;
+  };
+  const auto options = std::make_shared<BenchCommand>();
+  CLI::App* bench = app.add_subcommand(
+      "bench", "Time it: ratios within one run, interleaved, the least of several rounds");
+  bench->add_option("name", options->name, "bounce or ccd; without it both")
+      ->check(CLI::IsMember({"bounce", "ccd"}));
+  bench->add_option("--rounds", options->rounds, "how often each is timed")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  bench->callback([options] {
+    if (options->name != "ccd") {
+      bench_stepping(options->rounds);
+    }
+    if (options->name != "bounce") {
+      bench_queries(options->rounds);
+    }
+  });
+}
+
+}  // namespace kairos::experiments

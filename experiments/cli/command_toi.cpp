@@ -1,0 +1,90 @@
+#include "core/csv.hpp"
+#include "core/error.hpp"
+#include "experiments/cli/commands.hpp"
+#include "experiments/registry.hpp"
+#include "experiments/simulation.hpp"
+#include "experiments/toi/toi_stream.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace kairos::experiments {
+namespace {
+
+struct ToiCommand {
+  std::string queries;
+  std::string detector = MethodChoice{}.detector;
+  std::string tolerance = "0";
+  std::size_t threads = 0;
+  bool keep_going = false;
+
+  void run() const;
+};
+
+std::shared_ptr<const ContactDetector> locating_detector(const std::string& name) {
+  std::shared_ptr<const ContactDetector> detector = find_detector(name);
+  if (detector->info().locates) {
+    return detector;
+  }
+  std::string locating;
+  for (const auto& other : detectors()) {
+    if (other->info().locates) {
+      locating += fmt::format("{}{}", locating.empty() ? "" : ", ", other->info().name);
+    }
+  }
+  throw InputError(
+      "", 0, "--detector",
+      fmt::format("'{}' tells whether two shapes touch, not when; allowed: {}", name, locating));
+}
+
+void ToiCommand::run() const {
+  const std::optional<double> metres = parse_number(tolerance);
+  if (!metres || *metres < 0.0) {
+    throw InputError("", 0, "--tolerance",
+                     fmt::format("'{}' is not allowed; allowed: a finite number > 0 (m), or 0: the "
+                                 "detector's default",
+                                 tolerance));
+  }
+  const auto exact = locating_detector(detector);
+  LineBlocks rows(queries);
+  const std::int64_t bad = answer_toi_queries(rows, {exact, *metres, keep_going, threads});
+  if (bad > 0) {
+    std::fputs(fmt::format("{}: {} rows are invalid\n", rows.name(), bad).c_str(), stderr);
+  }
+}
+
+}  // namespace
+
+void add_toi_command(CLI::App& app) {
+  const auto command = std::make_shared<ToiCommand>();
+  CLI::App* toi = app.add_subcommand("toi", "Times of impact of pairs of moving shapes");
+  toi->add_option("queries", command->queries,
+                  "CSV with a header and one query per row; - reads stdin")
+      ->required()
+      ->type_name("QUERIES.csv");
+  toi->add_option("--detector", command->detector,
+                  fmt::format("a detector that locates (default {})", command->detector))
+      ->type_name("D");
+  toi->add_option("--tolerance", command->tolerance,
+                  "m (default: 1e-9 of the smaller extent plus the roundoff of the coordinates)")
+      ->type_name("X");
+  toi->add_option("--threads", command->threads, "how many (default: one per core)")
+      ->type_name("N")
+      ->check(CLI::Range(std::size_t{0}, std::size_t{1024}));
+  toi->add_flag("--keep-going", command->keep_going,
+                "name bad rows, answer them with the status `invalid`, and go on");
+  toi->footer(
+      "Columns, SI units, world frame: id; then for each of a_ and b_: half-extents hx,hy,hz;\n"
+      "centre px,py,pz; unit quaternion qw,qx,qy,qz (body to world); velocity vx,vy,vz;\n"
+      "acceleration ax,ay,az; angular velocity wx,wy,wz; and duration. Optional a_shape, b_shape:\n"
+      "box (default), sphere (radius in hx), half-space (through p, normal the body's +y).\n"
+      "Answer: id,status,t_lo,t_hi,gap,nx,ny,nz,evaluations in the same order.");
+  toi->callback([command] { command->run(); });
+}
+
+}  // namespace kairos::experiments

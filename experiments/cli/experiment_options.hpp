@@ -1,0 +1,27 @@
+#pragma once
+
+#include "experiments/sweeps/experiment.hpp"
+
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace kairos::experiments {
+
+/// The options that `sweep`, `experiment` and `reproduce` share.
+struct SizeOptions {
+  bool quick = false;
+  bool full = false;
+  std::size_t threads = 0;
+
+  void add_to(CLI::App& command);
+  [[nodiscard]] Size size() const { return full ? Size::full : Size::quick; }
+};
+
+/// Runs an experiment and says on stdout what it made and how it went.
+ExperimentOutcome run_and_tell(const ExperimentSpec& spec, const ExperimentOptions& options,
+                               const std::string& folder);
+
+}  // namespace kairos::experiments

@@ -1,0 +1,117 @@
+#include "experiments/output/atomic_file.hpp"
+
+#include "core/error.hpp"
+#include "experiments/run_error.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstddef>
+#include <cstdio>
+#include <system_error>
+#include <utility>
+
+namespace kairos::experiments {
+namespace {
+
+constexpr std::size_t buffer_size = std::size_t{1} << 16;
+
+std::string reason() { return std::generic_category().message(errno); }
+
+[[noreturn]] void fail(const std::string& path) {
+  throw RunError(fmt::format("{}: cannot be written: {}", path, reason()));
+}
+
+/// Where the name of the file begins, behind its folder.
+std::size_t name_begin(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  return slash == std::string::npos ? 0 : slash + 1;
+}
+
+std::string folder(const std::string& path) {
+  const std::size_t name = name_begin(path);
+  return name == 0 ? "." : path.substr(0, name);
+}
+
+/// Beside the final name, hidden, and different for every process and file.
+std::string temporary_name(const std::string& path) {
+  const std::size_t name = name_begin(path);
+  return fmt::format("{}.{}.{}.partial", path.substr(0, name), path.substr(name), ::getpid());
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
+  // A file without a name vanishes with its process, whatever kills it.
+  descriptor_ = ::open(folder(path_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) {  // not every file system has them
+    temporary_ = temporary_name(path_);
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  }
+  if (descriptor_ < 0) {
+    const std::string why = reason();
+    temporary_.clear();
+    throw InputError(path_, 0, "", fmt::format("cannot be created: {}", why));
+  }
+  buffer_.reserve(buffer_size);
+}
+
+AtomicFile::~AtomicFile() {
+  ::close(descriptor_);
+  if (!temporary_.empty()) {
+    ::unlink(temporary_.c_str());
+  }
+}
+
+void AtomicFile::write(std::string_view text) {
+  buffer_ += text;
+  if (buffer_.size() >= buffer_size) {
+    flush();
+  }
+}
+
+void AtomicFile::flush() {
+  std::string_view rest = buffer_;
+  while (!rest.empty()) {
+    const ::ssize_t written = ::write(descriptor_, rest.data(), rest.size());
+    if (written < 0 && errno != EINTR) {
+      fail(path_);
+    }
+    rest.remove_prefix(written < 0 ? 0 : static_cast<std::size_t>(written));
+  }
+  buffer_.clear();
+}
+
+void AtomicFile::finish() {
+  flush();
+  // Some file systems cannot be synchronised (EINVAL), which is no failure of theirs.
+  if (::fsync(descriptor_) != 0 && errno != EINVAL) {
+    fail(path_);
+  }
+}
+
+void AtomicFile::publish() {
+  if (temporary_.empty()) {
+    const std::string anonymous = fmt::format("/proc/self/fd/{}", descriptor_);
+    const std::string name = temporary_name(path_);
+    if (::linkat(AT_FDCWD, anonymous.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0) {
+      fail(path_);
+    }
+    temporary_ = name;
+  }
+  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) {
+    fail(path_);
+  }
+  temporary_.clear();
+}
+
+void write_file(const std::string& path, std::string_view text) {
+  AtomicFile file(path);
+  file.write(text);
+  file.finish();
+  file.publish();
+}
+
+}  // namespace kairos::experiments

@@ -1,0 +1,176 @@
+#include "experiments/output/run_summary.hpp"
+
+#include "experiments/output/json_writer.hpp"
+#include "experiments/registry.hpp"
+#include "experiments/version.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <set>
+
+namespace kairos::experiments {
+namespace {
+
+std::string_view bounds_name(Bounds bounds) { return bounds == Bounds::obb ? "obb" : "shape"; }
+
+std::string_view gravity_name(GravityMode mode) {
+  return mode == GravityMode::force ? "force" : "acceleration";
+}
+
+/// What `auto` came to: the integrators in use, each once.
+std::string integrators_in_use(const FinishedRun& run) {
+  const IslandStepper make = find_integrator(run.choice.method.integrator, run.choice.stepper);
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < run.model.islands().size(); ++i) {
+    names.emplace(make(run.model, i)->info().name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+double largest_error(const FinishedRun& run) {
+  return std::max(run.metrics.max_energy_error, std::abs(energy_error(run.result.ledger)));
+}
+
+void add_scene(JsonWriter& json, const Scene& scene) {
+  json.open("scene");
+  json.text("name", scene.name);
+  json.text("file", scene.path);
+  json.text("gravity", gravity_name(scene.gravity));
+  json.open("bounds");
+  for (const Body& body : scene.bodies) {
+    json.text(body.name, bounds_name(body.bounds));
+  }
+  json.close();
+  json.close();
+}
+
+void add_method(JsonWriter& json, const FinishedRun& run) {
+  const RunChoice& choice = run.choice;
+  const Scene& scene = run.model.scene();
+  json.open("method");
+  json.text("scheme", choice.method.scheme);
+  json.text("integrator", choice.method.integrator);
+  json.text("integrators_in_use", integrators_in_use(run));
+  json.text("detector", choice.method.detector);
+  json.text("impact", choice.method.impact);
+  json.text("broad_phase", run.model.broad_phase());
+  json.number("mean_frame", mean_frame_duration(choice.frames.value_or(scene.frames)));
+  json.number("duration", choice.duration.value_or(scene.duration));
+  json.number("step", choice.step.value_or(0.0));
+  json.number("threshold", choice.threshold);
+  json.flag("equal_substeps", choice.equal_substeps);
+  json.count("max_substeps", choice.max_substeps);
+  json.number("tolerance", choice.toi_tolerance);
+  json.number("relative_tolerance", choice.stepper.relative_tolerance);
+  json.number("absolute_tolerance", choice.stepper.absolute_tolerance);
+  json.flag("roundoff", choice.roundoff);
+  json.close();
+}
+
+void add_metrics(JsonWriter& json, const FinishedRun& run) {
+  const RunMetrics& metrics = run.metrics;
+  const double final_error = energy_error(run.result.ledger);
+  json.open("metrics");
+  json.number("max_depth", metrics.max_depth);
+  if (metrics.deepest) {
+    json.number("time_of_max_depth", metrics.time_of_max_depth);
+    json.text("deepest_a", run.model.body(metrics.deepest->first).name);
+    json.text("deepest_b", run.model.body(metrics.deepest->second).name);
+  }
+  json.number("time_overlapping", metrics.time_overlapping);
+  json.count("frames_overlapping", metrics.frames_overlapping);
+  json.number("energy_error", final_error);
+  json.number("energy_error_relative", metrics.relative(final_error));
+  json.number("max_energy_error", largest_error(run));
+  json.number("max_energy_error_relative", metrics.relative(largest_error(run)));
+  json.number("energy_scale", metrics.energy_scale);
+  json.close();
+}
+
+void add_energy(JsonWriter& json, const EnergyLedger& ledger) {
+  json.open("energy");
+  json.number("initial", ledger.initial_energy());
+  json.number("kinetic", ledger.kinetic());
+  json.number("potential", ledger.potential());
+  for (std::size_t i = 0; i < energy_line_count; ++i) {
+    const auto line = static_cast<EnergyLine>(i);
+    json.number(to_string(line), ledger.line(line));
+  }
+  json.number("unexplained", ledger.unexplained());
+  json.number("flow", ledger.flow());
+  json.close();
+}
+
+void add_cost(JsonWriter& json, const Cost& cost) {
+  json.open("cost");
+  json.count("frames", cost.frames);
+  json.count("steps", cost.steps);
+  json.count("right_hand_sides", cost.right_hand_sides);
+  json.count("overlap_tests", cost.overlap_tests);
+  json.count("toi_queries", cost.toi_queries);
+  json.count("toi_evaluations", cost.toi_evaluations);
+  json.count("impacts", cost.impacts);
+  json.count("events", cost.events);
+  json.close();
+}
+
+std::string_view status_name(RunStatus status) {
+  return status == RunStatus::completed ? "completed" : "stopped";
+}
+
+}  // namespace
+
+std::string summary_json(const FinishedRun& run) {
+  JsonWriter json;
+  add_scene(json, run.model.scene());
+  add_method(json, run);
+  json.open("versions");
+  for (const auto& [name, version] : versions()) {
+    json.text(name, version);
+  }
+  json.close();
+  json.text("status", status_name(run.result.status));
+  json.text("reason", run.result.reason);
+  json.number("end", run.result.end.seconds);
+  add_metrics(json, run);
+  add_energy(json, run.result.ledger);
+  add_cost(json, run.result.cost);
+  return json.finish();
+}
+
+std::string summary_text(const FinishedRun& run) {
+  const MethodChoice& method = run.choice.method;
+  const RunMetrics& metrics = run.metrics;
+  const EnergyLedger& ledger = run.result.ledger;
+  std::string text;
+  const auto line = [&text](std::string_view name, const std::string& value) {
+    fmt::format_to(std::back_inserter(text), "{:<22}{}\n", name, value);
+  };
+  line("scene", run.model.scene().name);
+  line("method", fmt::format("{} + {} ({}) + {} + {}", method.scheme, method.integrator,
+                             integrators_in_use(run), method.detector, method.impact));
+  line(status_name(run.result.status), fmt::format("t = {} s", run.result.end.seconds));
+  line("frames", fmt::format("{}", run.result.cost.frames));
+  line("impacts", fmt::format("{}", run.result.cost.impacts));
+  line("deepest penetration", fmt::format("{:.6g} m", metrics.max_depth));
+  line("time overlapping", fmt::format("{:.6g} s", metrics.time_overlapping));
+  const double final_error = energy_error(ledger);
+  line("energy error",
+       fmt::format("{:.3e} J ({:.3e} of {:.6g} J), at most {:.3e} J", final_error,
+                   metrics.relative(final_error), metrics.energy_scale, largest_error(run)));
+  line("energy",
+       fmt::format("{:.9g} J kinetic, {:.9g} J potential", ledger.kinetic(), ledger.potential()));
+  for (std::size_t i = 0; i < energy_line_count; ++i) {
+    const auto name = static_cast<EnergyLine>(i);
+    if (ledger.line(name) != 0.0) {
+      line(fmt::format("  {}", to_string(name)), fmt::format("{:.6e} J", ledger.line(name)));
+    }
+  }
+  line("  unexplained", fmt::format("{:.1e} J", ledger.unexplained()));
+  return text;
+}
+
+}  // namespace kairos::experiments

@@ -1,0 +1,122 @@
+#include "experiments/sweeps/experiment.hpp"
+
+#include "experiments/metrics/metrics.hpp"
+#include "experiments/output/output_folder.hpp"
+#include "experiments/report/figure.hpp"
+#include "experiments/sweeps/sweep.hpp"
+#include "experiments/sweeps/table.hpp"
+#include "experiments/version.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <fstream>
+#include <sstream>
+
+namespace kairos::experiments {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// What the columns of a sweep's tables mean: all that a figure needs to label its axes.
+void describe_columns(const SweepSpec& sweep, Table& table) {
+  const auto add = [&](const std::string& name, const std::string& role, const std::string& unit,
+                       const std::string& label, bool logarithmic) {
+    table.rows.push_back(
+        {sweep.name, name, role, unit, label, std::string(logarithmic ? "log" : "linear")});
+  };
+  for (const Axis& axis : sweep.axes) {
+    add(axis.name, axis.kind == Axis::Kind::listed ? "axis" : "drawn", axis.unit, axis.label,
+        axis.logarithmic);
+  }
+  for (const std::string& metric : sweep.metrics) {
+    add(metric, "metric", std::string(metric_unit(metric)), metric, false);
+  }
+  for (const std::string& metric : sweep.metrics) {
+    if (!sweep.reference.empty()) {
+      add(metric + "_error", "error", std::string(metric_unit(metric)),
+          fmt::format("|{} - {}|", metric, sweep.reference), true);
+    }
+  }
+  for (const Derived& derived : sweep.derived) {
+    add(derived.name, "derived", derived.unit, derived.name, false);
+  }
+}
+
+Table manifest_of(const ExperimentSpec& spec, const ExperimentOptions& options) {
+  Table table;
+  table.columns = {"key", "value"};
+  const auto add = [&table](const std::string& key, const std::string& value) {
+    table.rows.push_back({key, value});
+  };
+  add("name", spec.name);
+  add("title", spec.title);
+  add("asks", spec.asks);
+  add("how", spec.how);
+  add("finding", spec.finding);
+  add("command", options.command);
+  add("size", std::string(to_string(options.size)));
+  for (const SweepSpec& sweep : spec.sweeps) {
+    add("sweep", sweep.name);
+    add("caption:" + sweep.name, sweep.caption);
+    add("scene:" + sweep.name, sweep.scene);
+    add("seed:" + sweep.name, fmt::format("{}", sweep.seed));
+    add("repeats:" + sweep.name, fmt::format("{}", sweep.repeats));
+    add("x:" + sweep.name, sweep.x);
+    add("y:" + sweep.name, sweep.y);
+  }
+  for (const auto& [name, version] : versions()) {
+    add("version:" + name, version);
+  }
+  return table;
+}
+
+std::string file_text(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+ExperimentOutcome run_experiment(const ExperimentSpec& spec, const ExperimentOptions& options,
+                                 const std::string& folder) {
+  ExperimentOutcome outcome;
+  const auto start = Clock::now();
+  OutputFolder out(folder);
+  Table columns{{"sweep", "column", "role", "unit", "label", "scale"}, {}};
+  Table timings{{"sweep", "run", "method", "seconds"}, {}};
+  for (const SweepSpec& sweep : spec.sweeps) {
+    const SweepResult result = run_sweep(sweep, options.threads);
+    out.file(sweep.name + "_runs.csv").write(result.runs.csv());
+    out.file(sweep.name + "_summary.csv").write(result.summary.csv());
+    if (sweep.series) {
+      out.file(sweep.name + "_series.csv").write(result.series.csv());
+      out.file(sweep.name + "_apexes.csv").write(result.apexes.csv());
+    }
+    describe_columns(sweep, columns);
+    for (const auto& row : result.timings.rows) {
+      timings.rows.push_back({sweep.name, row[0], row[1], row[2]});
+    }
+    outcome.runs += result.runs.rows.size();
+    outcome.failed += result.failed;
+  }
+  out.file("columns.csv").write(columns.csv());
+  out.file("manifest.csv").write(manifest_of(spec, options).csv());
+  out.file("spec.toml").write(file_text(spec.path));
+  out.file("timings.csv").write(timings.csv());
+  out.publish();
+  outcome.run_seconds = seconds_since(start);
+
+  const auto drawing = Clock::now();
+  outcome.figure_problem = draw_figures(spec.figure, folder);
+  outcome.figure_seconds = seconds_since(drawing);
+  return outcome;
+}
+
+}  // namespace kairos::experiments

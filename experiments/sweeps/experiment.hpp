@@ -1,0 +1,35 @@
+#pragma once
+
+#include "experiments/sweeps/sweep_spec.hpp"
+
+#include <cstddef>
+#include <string>
+
+namespace kairos::experiments {
+
+struct ExperimentOptions {
+  Size size = Size::quick;
+  std::size_t threads = 0;  ///< 0: one per core
+  std::string command;      ///< that repeats it, for the report
+};
+
+/// What an experiment made.
+struct ExperimentOutcome {
+  std::size_t runs = 0;
+  std::size_t failed = 0;  ///< refused, stopped or failed; rows all the same
+  double run_seconds = 0.0;
+  double figure_seconds = 0.0;
+  std::string figure_problem;  ///< empty if the figures are drawn
+};
+
+/// Runs the sweeps of an experiment, writes their tables to `folder`, then draws the figures.
+///
+/// Files: `SWEEP_runs.csv` (a row per run), `SWEEP_summary.csv` (quartiles over repeats),
+/// `SWEEP_series.csv` and `SWEEP_apexes.csv` where asked for, `columns.csv` (what the columns
+/// mean), `manifest.csv` (question, method, command, seed, versions), `spec.toml` (a copy of the
+/// spec), `timings.csv` (the only file that differs between two runs), and from the figure script
+/// `NAME.svg`, `NAME.png` and `figures.csv`. Throws `InputError` and `RunError`.
+ExperimentOutcome run_experiment(const ExperimentSpec& spec, const ExperimentOptions& options,
+                                 const std::string& folder);
+
+}  // namespace kairos::experiments

@@ -1,0 +1,240 @@
+#include "experiments/sweeps/sweep_plan.hpp"
+
+#include "core/error.hpp"
+#include "core/random.hpp"
+#include "experiments/registry.hpp"
+#include "experiments/scene_library.hpp"
+#include "experiments/sweeps/sweep_method.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+
+namespace kairos::experiments {
+namespace {
+
+constexpr std::size_t max_runs = 10'000'000;
+
+/// Evaluates an expression of a spec; errors name the line it was written on.
+double value_of(const SweepSpec& spec, const std::string& key, int line, const std::string& text,
+                const Values& values) {
+  try {
+    return evaluate(text, values);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(spec.file, line, key, error.what());
+  }
+}
+
+std::string literal(const SweepSpec& spec, const Setting& setting, const Setting::Part& part,
+                    const Values& values, std::string& refused) {
+  if (!part.expression) {
+    return part.text;
+  }
+  const double x = value_of(spec, setting.key, setting.line, part.text, values);
+  if (!std::isfinite(x)) {
+    refused = fmt::format("{}: '{}' is not finite here", setting.key, part.text);
+  }
+  return fmt::format("{}", x);
+}
+
+/// A setting as TOML text, its expressions evaluated.
+std::string toml_text(const SweepSpec& spec, const Setting& setting, const Values& values,
+                      std::string& refused) {
+  if (!setting.array) {
+    return literal(spec, setting, setting.parts.front(), values, refused);
+  }
+  std::string out = "[";
+  for (const Setting::Part& part : setting.parts) {
+    out += out.size() > 1 ? ", " : "";
+    out += literal(spec, setting, part, values, refused);
+  }
+  return out + "]";
+}
+
+std::string unquoted(const std::string& toml) {
+  return toml.size() >= 2 && (toml.front() == '"' || toml.front() == '\'')
+             ? toml.substr(1, toml.size() - 2)
+             : toml;
+}
+
+/// Sets a method option from a spec: names as text, numbers as expressions, true and false.
+void set_option(const SweepSpec& spec, const Setting& option, const Values& values,
+                MethodOptions& options, std::string& refused) {
+  if (option.array) {
+    throw InputError(spec.file, option.line, option.key, "must be one value, not a list");
+  }
+  const std::string text = unquoted(toml_text(spec, option, values, refused));
+  try {
+    if (is_text_option(option.key)) {
+      options.set_text(option.key, text);
+    } else if (text == "true" || text == "false") {
+      options.set_number(option.key, text == "true" ? 1.0 : 0.0);
+    } else if (refused.empty()) {
+      options.set_number(option.key, value_of(spec, option.key, option.line, text, values));
+    }
+  } catch (const std::invalid_argument& error) {
+    throw InputError(spec.file, option.line, option.key, error.what());
+  }
+}
+
+/// Names that do not exist are wrong in the spec, not refused run by run.
+void check_method(const SweepSpec& spec, const MethodSpec& method, const RunChoice& choice) {
+  const int line = method.options.empty() ? spec.line : method.options.front().line;
+  try {
+    (void)find_scheme(choice.method.scheme);
+    (void)find_integrator(choice.method.integrator);
+    (void)find_detector(choice.method.detector);
+    (void)find_impact_law(choice.method.impact);
+  } catch (const InputError& error) {
+    throw InputError(spec.file, line, error.key().empty() ? "method" : error.key(), error.reason());
+  }
+}
+
+/// Stream of a name (FNV-1a): an axis keeps its numbers when other axes are added.
+std::uint64_t stream_of(std::string_view name) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const char c : name) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
+  }
+  return hash;
+}
+
+AxisValue drawn(const SweepSpec& spec, const Axis& axis, std::size_t point, std::int64_t repeat) {
+  const auto n = static_cast<std::uint64_t>(spec.repeats);
+  const auto k = static_cast<std::uint64_t>(repeat);
+  const std::uint64_t stream = stream_of(axis.name);
+  double u = 0.0;
+  if (axis.kind == Axis::Kind::random) {
+    u = Random(spec.seed, stream, point * n + k).uniform();
+  } else {
+    u = (static_cast<double>(k) + Random(spec.seed, stream, point).uniform()) /
+        static_cast<double>(n);
+  }
+  const double x = axis.from + (axis.to - axis.from) * u;
+  return {fmt::format("{}", x), fmt::format("{}", x), x};
+}
+
+std::size_t point_count(const SweepSpec& spec) {
+  std::size_t points = 1;
+  for (const Axis& axis : spec.axes) {
+    points *= axis.kind == Axis::Kind::listed ? axis.values.size() : 1;
+    if (points > max_runs) {
+      break;
+    }
+  }
+  const double runs = static_cast<double>(points) * static_cast<double>(spec.repeats) *
+                      static_cast<double>(spec.methods.size());
+  if (runs > static_cast<double>(max_runs)) {
+    throw InputError(
+        spec.file, spec.line, "axis",
+        fmt::format("the sweep would be {:.3g} runs; at most {} are allowed", runs, max_runs));
+  }
+  return points;
+}
+
+/// Axis values of a combination: the last axis runs fastest.
+std::vector<AxisValue> values_at(const SweepSpec& spec, std::size_t point, std::int64_t repeat) {
+  std::vector<AxisValue> out(spec.axes.size());
+  std::size_t rest = point;
+  for (std::size_t i = spec.axes.size(); i-- > 0;) {
+    const Axis& axis = spec.axes[i];
+    if (axis.kind == Axis::Kind::listed) {
+      out[i] = axis.values[rest % axis.values.size()];
+      rest /= axis.values.size();
+    } else {
+      out[i] = drawn(spec, axis, point, repeat);
+    }
+  }
+  return out;
+}
+
+/// Turns axis values into scene values and method options.
+void fill(const SweepSpec& spec, PlannedRun& run) {
+  const MethodSpec& method = spec.methods[run.method];
+  run.values = spec.constants;
+  run.values["repeat"] = static_cast<double>(run.repeat);
+  run.values["repeats"] = static_cast<double>(spec.repeats);
+  for (std::size_t i = 0; i < spec.axes.size(); ++i) {
+    if (run.axis_values[i].number) {
+      run.values[spec.axes[i].name] = *run.axis_values[i].number;
+    }
+  }
+  MethodOptions options;
+  for (const auto* settings : {&spec.options, &method.options}) {
+    for (const Setting& option : *settings) {
+      set_option(spec, option, run.values, options, run.refused);
+    }
+  }
+  for (std::size_t i = 0; i < spec.axes.size(); ++i) {
+    const Axis& axis = spec.axes[i];
+    const AxisValue& value = run.axis_values[i];
+    if (axis.key.starts_with("method.")) {
+      const Setting option{axis.key.substr(7), {{value.toml, false}}, false, axis.line};
+      set_option(spec, option, run.values, options, run.refused);
+    } else if (!axis.key.empty()) {
+      run.overrides.push_back({axis.key, value.toml});
+    }
+  }
+  for (const auto* settings : {&spec.set, &method.set}) {
+    for (const Setting& setting : *settings) {
+      run.overrides.push_back({setting.key, toml_text(spec, setting, run.values, run.refused)});
+    }
+  }
+  try {
+    const std::size_t draw =
+        run.point * static_cast<std::size_t>(spec.repeats) + static_cast<std::size_t>(run.repeat);
+    run.choice = options.choice(Random(spec.seed, stream_of("frames"), draw).bits());
+  } catch (const std::invalid_argument& error) {
+    throw InputError(spec.file, spec.line, "method", error.what());
+  }
+}
+
+}  // namespace
+
+std::string scene_path(const SweepSpec& spec) {
+  const auto beside = std::filesystem::path(spec.file).parent_path() / spec.scene;
+  std::error_code error;
+  if (std::filesystem::is_regular_file(beside, error)) {
+    return beside.string();
+  }
+  // A shipped name means the shipped scene, whatever lies about where the program is started.
+  const std::vector<std::string> shipped = shipped_scenes();
+  if (std::find(shipped.begin(), shipped.end(), spec.scene) != shipped.end()) {
+    return (std::filesystem::path(scene_folder()) / (spec.scene + ".toml")).string();
+  }
+  try {
+    return find_scene(spec.scene);
+  } catch (const InputError& wrong) {
+    throw InputError(spec.file, spec.line, "scene",
+                     fmt::format("'{}' {}", spec.scene, wrong.reason()));
+  }
+}
+
+std::vector<PlannedRun> plan_sweep(const SweepSpec& spec) {
+  const std::size_t points = point_count(spec);
+  std::vector<PlannedRun> runs;
+  runs.reserve(points * spec.methods.size() * static_cast<std::size_t>(spec.repeats));
+  for (std::size_t m = 0; m < spec.methods.size(); ++m) {
+    for (std::size_t point = 0; point < points; ++point) {
+      for (std::int64_t repeat = 0; repeat < spec.repeats; ++repeat) {
+        PlannedRun run;
+        run.index = runs.size();
+        run.method = m;
+        run.point = point;
+        run.repeat = repeat;
+        run.axis_values = values_at(spec, point, repeat);
+        fill(spec, run);
+        if (repeat == 0) {
+          check_method(spec, spec.methods[m], run.choice);
+        }
+        runs.push_back(std::move(run));
+      }
+    }
+  }
+  return runs;
+}
+
+}  // namespace kairos::experiments

@@ -1,0 +1,223 @@
+#include "experiments/toi/toi_query.hpp"
+
+#include "core/csv.hpp"
+#include "core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <system_error>
+
+namespace kairos::experiments {
+namespace {
+
+constexpr std::array<std::string_view, 19> number_names{"hx", "hy", "hz", "px", "py", "pz", "qw",
+                                                        "qx", "qy", "qz", "vx", "vy", "vz", "ax",
+                                                        "ay", "az", "wx", "wy", "wz"};
+enum NumberIndex : std::size_t { h = 0, p = 3, q = 6, v = 10, a = 13, w = 16 };
+
+/// Squares of lengths, and of what they come to in the window, must be finite.
+constexpr double largest_magnitude = 1e150;
+
+double read_number(std::string_view field, std::string_view column) {
+  std::string_view text = trimmed(field);
+  if (text.starts_with('+')) {
+    text.remove_prefix(1);
+  }
+  double value = 0.0;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  if (text.empty() || rest != end || error == std::errc::invalid_argument) {
+    throw BadField{column, fmt::format("'{}' is not a number", field)};
+  }
+  if (error != std::errc()) {
+    throw BadField{column, fmt::format("'{}' is beyond the range of a double", field)};
+  }
+  if (!(std::abs(value) <= largest_magnitude)) {
+    throw BadField{column, fmt::format("'{}' is not allowed; allowed: finite numbers of magnitude "
+                                       "up to {}",
+                                       field, largest_magnitude)};
+  }
+  return value;
+}
+
+}  // namespace
+
+bool split_fields(std::string_view line, std::vector<std::string_view>& fields) {
+  fields.clear();
+  bool quoted = false;
+  std::size_t start = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"') {
+      quoted = !quoted;
+    } else if (line[i] == ',' && !quoted) {
+      fields.push_back(line.substr(start, i - start));
+      start = i + 1;
+    }
+  }
+  fields.push_back(line.substr(start));
+  return !quoted;
+}
+
+ToiQueryFormat::ToiQueryFormat(std::string_view header, const std::string& file) : file_(file) {
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (header.starts_with(byte_order_mark)) {
+    header.remove_prefix(byte_order_mark.size());
+  }
+  std::vector<std::string_view> fields;
+  if (!split_fields(header, fields)) {
+    throw InputError(file_, 1, "", "the header has a quote that does not end");
+  }
+  for (const std::string_view field : fields) {
+    std::string_view name = trimmed(field);
+    if (name.size() >= 2 && name.front() == '"' && name.back() == '"') {
+      name = name.substr(1, name.size() - 2);
+    }
+    columns_.emplace_back(name);
+  }
+  id_ = need("id");
+  a_ = body_columns("a_");
+  b_ = body_columns("b_");
+  duration_ = need("duration");
+}
+
+ToiQueryFormat::BodyColumns ToiQueryFormat::body_columns(const std::string& prefix) const {
+  BodyColumns columns;
+  columns.shape_name = prefix + "shape";
+  columns.shape = find(columns.shape_name);
+  for (std::size_t i = 0; i < numbers_per_body; ++i) {
+    columns.name[i] = prefix + std::string(number_names[i]);
+    columns.number[i] = need(columns.name[i]);
+  }
+  return columns;
+}
+
+std::size_t ToiQueryFormat::find(const std::string& name) const {
+  const auto first = std::find(columns_.begin(), columns_.end(), name);
+  if (first == columns_.end()) {
+    return absent;
+  }
+  if (std::find(first + 1, columns_.end(), name) != columns_.end()) {
+    throw InputError(file_, 1, name, "is the name of two columns; allowed: one");
+  }
+  return static_cast<std::size_t>(first - columns_.begin());
+}
+
+std::size_t ToiQueryFormat::need(const std::string& name) const {
+  const std::size_t column = find(name);
+  if (column == absent) {
+    throw InputError(file_, 1, name,
+                     "is missing from the header; needed: id, then hx hy hz px py pz qw qx qy qz "
+                     "vx vy vz ax ay az wx wy wz with a_ and with b_ before each, and duration");
+  }
+  return column;
+}
+
+/// Reads the columns of one body of one row.
+class ToiQueryFormat::Body {
+ public:
+  Body(const BodyColumns& columns, const std::vector<std::string_view>& fields)
+      : columns_(columns), fields_(fields) {}
+
+  [[nodiscard]] Shape shape() const {
+    const std::string_view kind =
+        columns_.shape == absent ? std::string_view("box") : trimmed(fields_[columns_.shape]);
+    if (kind == "box" || kind.empty()) {
+      return Box{{extent(h), extent(h + 1), extent(h + 2)}};
+    }
+    if (kind == "sphere") {
+      return Sphere{extent(h)};
+    }
+    if (kind == "half-space") {
+      return HalfSpace{};
+    }
+    throw BadField{columns_.shape_name,
+                   fmt::format("'{}' is unknown; allowed: box, sphere, half-space", kind)};
+  }
+
+  [[nodiscard]] Motion motion(double duration) const {
+    const Pose pose{vector(p), orientation()};
+    const Twist twist{vector(v), vector(w)};
+    const Vector3 acceleration = vector(a);
+    const double reach = pose.position.norm() + twist.linear.norm() * duration +
+                         0.5 * acceleration.norm() * duration * duration +
+                         twist.angular.norm() * duration;
+    if (!(reach <= largest_magnitude)) {
+      throw BadField{columns_.name[v],
+                     fmt::format("with this acceleration and duration leads beyond {}; allowed: "
+                                 "motions that stay within",
+                                 largest_magnitude)};
+    }
+    return Motion::ballistic(Instant{}, duration, pose, twist, acceleration);
+  }
+
+ private:
+  [[nodiscard]] double number(std::size_t i) const {
+    return read_number(fields_[columns_.number[i]], columns_.name[i]);
+  }
+  [[nodiscard]] Vector3 vector(std::size_t i) const {
+    return {number(i), number(i + 1), number(i + 2)};
+  }
+  [[nodiscard]] double extent(std::size_t i) const {
+    const double value = number(i);
+    if (!(value > 0.0)) {
+      throw BadField{columns_.name[i],
+                     fmt::format("{} is no half-extent; allowed: numbers > 0 (m)", value)};
+    }
+    return value;
+  }
+  [[nodiscard]] Quaternion orientation() const {
+    Quaternion q_WB(number(q), number(q + 1), number(q + 2), number(q + 3));
+    const double norm = q_WB.norm();
+    constexpr double unit_tolerance = 1e-6;  // physical: what a person's rounding may cost
+    if (!(std::abs(norm - 1.0) <= unit_tolerance)) {
+      throw BadField{
+          columns_.name[q],
+          fmt::format("the quaternion has length {}; allowed: 1 within {}", norm, unit_tolerance)};
+    }
+    q_WB.coeffs() /= norm;
+    return q_WB;
+  }
+
+  const BodyColumns& columns_;
+  const std::vector<std::string_view>& fields_;
+};
+
+std::string_view ToiQueryFormat::id(std::string_view row, Scratch& scratch) const {
+  const bool whole = split_fields(row, scratch.fields);
+  return whole && id_ < scratch.fields.size() ? scratch.fields[id_] : std::string_view();
+}
+
+ToiQuery ToiQueryFormat::read(std::string_view row, Scratch& scratch) const {
+  std::vector<std::string_view>& fields = scratch.fields;
+  if (!split_fields(row, fields)) {
+    throw BadField{"", "has a quote that does not end"};
+  }
+  if (fields.size() != columns_.size()) {
+    throw BadField{"", fmt::format("has {} fields; the header names {} columns", fields.size(),
+                                   columns_.size())};
+  }
+  ToiQuery query;
+  query.id = fields[id_];
+  query.duration = read_number(fields[duration_], "duration");
+  if (query.duration < 0.0) {
+    throw BadField{"duration",
+                   fmt::format("{} is negative; allowed: numbers >= 0 (s)", query.duration)};
+  }
+  const Body body_a(a_, fields);
+  const Body body_b(b_, fields);
+  query.shape_a = body_a.shape();
+  query.shape_b = body_b.shape();
+  if (std::holds_alternative<HalfSpace>(query.shape_a) &&
+      std::holds_alternative<HalfSpace>(query.shape_b)) {
+    throw BadField{"b_shape", "two half-spaces have no time of impact; allowed: at most one"};
+  }
+  query.motion_a = body_a.motion(query.duration);
+  query.motion_b = body_b.motion(query.duration);
+  return query;
+}
+
+}  // namespace kairos::experiments
