@@ -5,6 +5,7 @@
 #include "experiments/scene_library.hpp"
 #include "experiments/sweeps/experiment_library.hpp"
 #include "experiments/sweeps/sweep_spec.hpp"
+#include "experiments/thesis/thesis_figure.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -85,18 +86,25 @@ void list_experiments() {
   }
 }
 
+void list_figures() {
+  for (const ThesisFigure& figure : thesis_figures()) {
+    fmt::print("  {:<24}{}\n", figure.name, figure.title);
+  }
+}
+
 struct Section {
   const char* name;
   void (*list)();
 };
-constexpr std::array<Section, 8> sections{{{"schemes", list_schemes},
+constexpr std::array<Section, 9> sections{{{"schemes", list_schemes},
                                            {"integrators", list_integrators},
                                            {"detectors", list_detectors},
                                            {"impact-laws", list_impact_laws},
                                            {"broad-phases", list_broad_phases},
                                            {"entities", list_entities},
                                            {"scenes", list_scenes},
-                                           {"experiments", list_experiments}}};
+                                           {"experiments", list_experiments},
+                                           {"figures", list_figures}}};
 
 }  // namespace
 

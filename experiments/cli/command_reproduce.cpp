@@ -1,11 +1,15 @@
+#include "core/error.hpp"
+#include "core/nearest_name.hpp"
 #include "experiments/cli/commands.hpp"
 #include "experiments/cli/experiment_options.hpp"
 #include "experiments/report/report.hpp"
 #include "experiments/sweeps/experiment_library.hpp"
+#include "experiments/thesis/thesis_figure.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -15,53 +19,112 @@
 namespace kairos::experiments {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct ReproduceCommand {
   std::vector<std::string> only;
   std::string out = "out";
   SizeOptions size;
 
   void run() const;
+
+ private:
+  [[nodiscard]] std::vector<std::string> wanted() const;
+  void make(const ThesisFigure& figure, const fs::path& folder) const;
+  void make(const ExperimentSpec& spec, const fs::path& folder) const;
 };
 
-/// All specs are read before the first one runs: a mistake in the last shows at once.
-std::vector<ExperimentSpec> read_specs(const std::vector<std::string>& names, Size size) {
-  std::vector<ExperimentSpec> specs;
-  for (const std::string& name : names) {
-    specs.push_back(read_experiment(find_experiment(name), size));
+/// Everything that can be made, in the order of the report.
+std::vector<std::string> all_names() {
+  std::vector<std::string> names;
+  for (const ThesisFigure& figure : thesis_figures()) {
+    names.emplace_back(figure.name);
   }
-  return specs;
+  const std::vector<std::string> experiments = shipped_experiments();
+  names.insert(names.end(), experiments.begin(), experiments.end());
+  return names;
+}
+
+/// Each name once, as the report names it; figures may be written fig1 or 1.
+std::vector<std::string> ReproduceCommand::wanted() const {
+  const std::vector<std::string> all = all_names();
+  if (only.empty()) {
+    return all;
+  }
+  std::vector<std::string> names;
+  for (const std::string& name : only) {
+    const ThesisFigure* figure = find_thesis_figure(name);
+    const std::string known = figure != nullptr ? std::string(figure->name) : name;
+    if (std::find(all.begin(), all.end(), known) == all.end()) {
+      const std::vector<std::string_view> views(all.begin(), all.end());
+      throw InputError("", 0, "--only",
+                       fmt::format("'{}' is neither a figure nor an experiment; {}", name,
+                                   suggestion(name, views)));
+    }
+    if (std::find(names.begin(), names.end(), known) == names.end()) {
+      names.push_back(known);
+    }
+  }
+  return names;
+}
+
+void ReproduceCommand::make(const ThesisFigure& figure, const fs::path& folder) const {
+  fmt::print("{}\n  ", figure.title);
+  std::fflush(stdout);
+  const FigureOutcome made = make_figure(figure, size.size(), folder.string());
+  fmt::print("{}: data in {:.1f} s, drawn in {:.1f} s -> {}\n", figure.name, made.data_seconds,
+             made.drawing_seconds, folder.string());
+  std::fflush(stdout);
+  if (!made.problem.empty()) {
+    fmt::print(stderr, "{}: {}\n", figure.name, made.problem);
+  }
+}
+
+void ReproduceCommand::make(const ExperimentSpec& spec, const fs::path& folder) const {
+  fmt::print("{}\n  ", spec.title);
+  std::fflush(stdout);
+  const std::string command =
+      fmt::format("kairos experiment {} --{}", spec.name, to_string(size.size()));
+  run_and_tell(spec, {size.size(), size.threads, command}, folder.string());
+  std::fflush(stdout);
 }
 
 void ReproduceCommand::run() const {
   const auto start = std::chrono::steady_clock::now();
-  const auto specs = read_specs(only.empty() ? shipped_experiments() : only, size.size());
-  const std::filesystem::path report = std::filesystem::path(out) / "report";
-  fmt::print("Experiments at {} size, into {}\n", to_string(size.size()), report.string());
-  std::size_t runs = 0;
+  const std::vector<std::string> names = wanted();
+  // All specs are read before anything runs: a mistake in the last shows at once.
+  std::vector<ExperimentSpec> specs;
+  for (const std::string& name : names) {
+    if (find_thesis_figure(name) == nullptr) {
+      specs.push_back(read_experiment(find_experiment(name), size.size()));
+    }
+  }
+  const fs::path report = fs::path(out) / "report";
+  fmt::print("{} figures and {} experiments at {} size, into {}\n", names.size() - specs.size(),
+             specs.size(), to_string(size.size()), report.string());
+  for (const std::string& name : names) {
+    if (const ThesisFigure* figure = find_thesis_figure(name)) {
+      make(*figure, report / name);
+    }
+  }
   for (const ExperimentSpec& spec : specs) {
-    fmt::print("{}\n  ", spec.title);
-    std::fflush(stdout);
-    const std::string command =
-        fmt::format("kairos experiment {} --{}", spec.name, to_string(size.size()));
-    runs += run_and_tell(spec, {size.size(), size.threads, command}, (report / spec.name).string())
-                .runs;
-    std::fflush(stdout);
+    make(spec, report / spec.name);
   }
   const std::string page = write_report(report.string());
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  fmt::print("{} runs in all, {:.1f} s. The report: {}\n", runs, seconds, page);
+  fmt::print("In all {:.1f} s. The report: {}\n", seconds, page);
 }
 
 }  // namespace
 
 void add_reproduce_command(CLI::App& app) {
   const auto command = std::make_shared<ReproduceCommand>();
-  CLI::App* reproduce =
-      app.add_subcommand("reproduce", "Run all experiments, draw the figures, write the report");
+  CLI::App* reproduce = app.add_subcommand(
+      "reproduce", "Make the thesis' figures, run all experiments, write the report");
   reproduce
       ->add_option("--only", command->only,
-                   fmt::format("these only: {}", fmt::join(shipped_experiments(), ", ")))
+                   fmt::format("these only: {}", fmt::join(all_names(), ", ")))
       ->type_name("NAME");
   reproduce->add_option("--out", command->out, "the report goes to DIR/report/index.html")
       ->type_name("DIR")

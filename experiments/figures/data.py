@@ -43,6 +43,17 @@ class Experiment:
         """kind: runs, summary, series or apexes."""
         return read_csv(os.path.join(self.folder, f"{sweep}_{kind}.csv"))
 
+    def rows(self, table):
+        """A table by its name; figures of the thesis have no sweeps."""
+        return read_csv(os.path.join(self.folder, f"{table}.csv"))
+
+    def value(self, name):
+        """A single number of `values.csv`."""
+        found = [row["value"] for row in self.rows("values") if row["name"] == name]
+        if not found:
+            raise KeyError(f"no value {name} in {self.folder}")
+        return found[0]
+
     def column(self, sweep, name):
         for row in self.columns:
             if row["sweep"] == sweep and row["column"] == name:

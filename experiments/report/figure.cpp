@@ -10,7 +10,9 @@
 
 namespace kairos::experiments {
 
-std::string find_python() {
+namespace {
+
+std::string look_for_python() {
   const char* wanted = std::getenv("KAIROS_PYTHON");
   for (const std::string& python :
        {std::string(wanted == nullptr ? "" : wanted), std::string("python3"),
@@ -21,6 +23,13 @@ std::string find_python() {
     }
   }
   return "";
+}
+
+}  // namespace
+
+std::string find_python() {
+  static const std::string found = look_for_python();
+  return found;
 }
 
 std::string draw_figures(const std::string& script, const std::string& folder) {

@@ -1,0 +1,53 @@
+#include "experiments/thesis/thesis_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace kairos::experiments {
+namespace thesis {
+
+// A new figure is one file, one declaration here and one line in the list below.
+ThesisFigure sinking_ball();
+
+}  // namespace thesis
+
+std::span<const ThesisFigure> thesis_figures() {
+  static const ThesisFigure figures[] = {
+      thesis::sinking_ball(),
+  };
+  return figures;
+}
+
+std::span<const ThesisChapter> thesis_chapters() {
+  static constexpr ThesisChapter chapters[] = {
+      {"2", "Bounding volumes"},
+      {"3", "Collision detection"},
+      {"4", "Motion"},
+      {"5", "A taxonomy of entities"},
+      {"7", "Virtual table tennis"},
+      {"8", "The systems in action"},
+      {"9", "Problems and extensibility"},
+  };
+  return chapters;
+}
+
+const ThesisFigure* find_thesis_figure(std::string_view name) {
+  std::string wanted(name);
+  std::transform(wanted.begin(), wanted.end(), wanted.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string number = wanted.starts_with("fig") ? wanted.substr(3) : wanted;
+  if (!number.empty() && number.size() <= 2 &&
+      std::all_of(number.begin(), number.end(), [](unsigned char c) { return std::isdigit(c); })) {
+    wanted = fmt::format("fig{:0>2}", number);
+  }
+  for (const ThesisFigure& figure : thesis_figures()) {
+    if (figure.name == wanted) {
+      return &figure;
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace kairos::experiments
