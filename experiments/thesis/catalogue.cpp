@@ -9,13 +9,35 @@ namespace kairos::experiments {
 namespace thesis {
 
 // A new figure is one file, one declaration here and one line in the list below.
+ThesisFigure two_spheres();
+ThesisFigure aabbs_overlapping();
+ThesisFigure aabbs_on_one_axis();
+ThesisFigure ball_in_box();
+ThesisFigure separating_axis();
+ThesisFigure flow_of_events();
+ThesisFigure get_and_give();
+ThesisFigure hierarchy();
+ThesisFigure class_diagram();
 ThesisFigure sinking_ball();
+ThesisFigure swept_box_of_geometric();
+ThesisFigure improved_flow_of_events();
 
 }  // namespace thesis
 
 std::span<const ThesisFigure> thesis_figures() {
   static const ThesisFigure figures[] = {
+      thesis::two_spheres(),
+      thesis::aabbs_overlapping(),
+      thesis::aabbs_on_one_axis(),
+      thesis::ball_in_box(),
+      thesis::separating_axis(),
+      thesis::flow_of_events(),
+      thesis::get_and_give(),
+      thesis::hierarchy(),
+      thesis::class_diagram(),
       thesis::sinking_ball(),
+      thesis::swept_box_of_geometric(),
+      thesis::improved_flow_of_events(),
   };
   return figures;
 }

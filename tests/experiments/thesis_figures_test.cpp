@@ -1,5 +1,6 @@
 // The figures of the thesis, made again: their data, their names, their bytes.
 
+#include "core/entity.hpp"
 #include "experiments/sweeps/table.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
 #include "tests/catch.hpp"
@@ -99,4 +100,132 @@ TEST_CASE("reproduce --only makes one figure, the same bytes each time", "[figur
   CHECK(unknown.exit_code == 2);
   CHECK(unknown.err.find("fig31") != std::string::npos);
   CHECK_THROWS(folder.entries("no"));  // not even the folder
+}
+
+TEST_CASE("figure 1: spheres overlap up to the sum of their radii, to the last bit", "[figures]") {
+  const Table pairs = table_of("fig01", "pairs");
+  REQUIRE(pairs.rows.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double gap =
+        number(pairs, i, "distance") - number(pairs, i, "ra") - number(pairs, i, "rb");
+    CHECK(std::abs(number(pairs, i, "gap") - gap) <= 4 * 0x1p-52 * 2.0);  // roundoff of metres
+    CHECK(number(pairs, i, "overlapping") == (i == 0 ? 0.0 : 1.0));
+  }
+  const Table edge = table_of("fig01", "edge");
+  for (std::size_t i = 0; i < edge.rows.size(); ++i) {
+    CHECK(number(edge, i, "overlapping") == (number(edge, i, "ulp") <= 0.0 ? 1.0 : 0.0));
+  }
+}
+
+TEST_CASE("figures 2 and 3: corners miss overlaps, the printed test invents them", "[figures]") {
+  const Table rates = table_of("fig02", "rates");
+  const auto rate = [&](const std::string& test, const std::string& column) {
+    for (std::size_t i = 0; i < rates.rows.size(); ++i) {
+      if (to_text(rates.rows[i][0]) == test) {
+        return number(rates, i, column);
+      }
+    }
+    return -1.0;
+  };
+  CHECK(rate("library", "missed") == 0.0);
+  CHECK(rate("library", "invented") == 0.0);
+  CHECK(rate("corner", "missed") > rate("corners", "missed"));
+  CHECK(rate("corners", "missed") > rate("both", "missed"));
+  CHECK(rate("both", "missed") > 0.0);
+  CHECK(rate("both", "invented") == 0.0);
+  CHECK(rate("printed", "invented") > 0.0);
+
+  // Fig. 3's own boxes: disjoint, and overlapping for the printed test alone.
+  const Table one_axis = table_of("fig03", "pairs");
+  for (std::size_t i = 0; i < one_axis.rows.size(); ++i) {
+    const std::string test = to_text(one_axis.rows[i][one_axis.column("test")]);
+    CAPTURE(test);
+    CHECK(number(one_axis, i, "overlap") == (test == "printed" ? 1.0 : 0.0));
+  }
+}
+
+TEST_CASE("figure 5: a box fits a ball better than a ball fits a box", "[figures]") {
+  const Table fits = table_of("fig05", "fits");
+  const double pi = 3.141592653589793;
+  const double expected[] = {4 / pi, pi / 2, 6 / pi, pi * std::sqrt(3.0) / 2};
+  REQUIRE(fits.rows.size() == 4);
+  for (std::size_t i = 0; i < 4; ++i) {
+    CHECK(std::abs(number(fits, i, "ratio") / expected[i] - 1.0) <= 16 * 0x1p-52);  // roundoff
+    // Statistical: four standard deviations of about 1e5 points.
+    CHECK(std::abs(number(fits, i, "sampled") / expected[i] - 1.0) <= 0.015);
+  }
+}
+
+TEST_CASE("figure 6: the axis that sat returns separates the intervals by its gap", "[figures]") {
+  const Table intervals = table_of("fig06", "projections");
+  const Table axes = table_of("fig06", "axes");
+  REQUIRE(intervals.rows.size() == 2);
+  REQUIRE(axes.rows.size() == 15);
+  const double apart = number(intervals, 1, "lower") - number(intervals, 0, "upper");
+  CHECK(apart > 0.1);
+  double largest = -1.0;
+  for (std::size_t i = 0; i < axes.rows.size(); ++i) {
+    if (to_text(axes.rows[i][axes.column("gap")]).empty()) {
+      continue;  // parallel edges
+    }
+    largest = std::max(largest, number(axes, i, "gap"));
+    if (number(axes, i, "returned") == 1.0) {
+      CHECK(std::abs(number(axes, i, "gap") - apart) <= 1e-15);  // roundoff of metres
+    }
+  }
+  CHECK(std::abs(largest - apart) <= 1e-15);
+}
+
+TEST_CASE("figures 7 and 15: stages in the order of the thesis, fractions up to a frame",
+          "[figures]") {
+  const auto stages = [](const Table& frame) {
+    std::string text;
+    for (const auto& row : frame.rows) {
+      text += to_text(row[1]) + " ";
+    }
+    return text;
+  };
+  CHECK(stages(table_of("fig07", "frame")) == "draw detect handle calculate-positions ");
+  const Table frame = table_of("fig15", "frame");
+  CHECK(stages(frame).starts_with(
+      "draw calculate-positions restrict-movement advance detect calculate-positions"));
+  double done = 0.0;
+  for (std::size_t i = 0; i < frame.rows.size(); ++i) {
+    if (to_text(frame.rows[i][1]) == "advance") {
+      CHECK(number(frame, i, "fraction") > done);
+      done = number(frame, i, "fraction");
+    }
+  }
+  CHECK(done == 1.0);
+}
+
+TEST_CASE("figures 8 to 10: every registered entity, with the class it inherits", "[figures]") {
+  const Table classes = table_of("fig09", "classes");
+  CHECK(classes.rows.size() == kairos::entity_catalogue().size());
+  for (const auto& row : classes.rows) {
+    const std::string name = to_text(row[1]);
+    const std::string parent = to_text(row[2]);
+    CAPTURE(name, parent);
+    CHECK((parent == "Entity" || parent == "Ball"));
+    CHECK((parent == "Ball") == (name == "Balloon" || name == "RigidBody"));
+  }
+}
+
+TEST_CASE("figure 14: the swept box is as long as the movement and the ball", "[figures]") {
+  const Table boxes = table_of("fig14", "boxes");
+  const auto side = [&](std::size_t a, std::size_t b) {
+    return std::hypot(number(boxes, a, "x") - number(boxes, b, "x"),
+                      number(boxes, a, "y") - number(boxes, b, "y"));
+  };
+  const Table positions = table_of("fig14", "positions");
+  const double moved = std::hypot(number(positions, 2, "x") - number(positions, 0, "x"),
+                                  number(positions, 2, "y") - number(positions, 0, "y"));
+  const double diameter = 0.3;
+  const double longest = std::max(side(0, 1), side(1, 2));
+  const double shortest = std::min(side(0, 1), side(1, 2));
+  // Outward rounding, which makes the box a proof: never smaller, 1e-12 larger at most.
+  CHECK(longest >= moved + diameter - 1e-15);
+  CHECK(longest <= moved + diameter + 1e-12);
+  CHECK(shortest >= diameter - 1e-15);
+  CHECK(shortest <= diameter + 1e-12);
 }
