@@ -4,6 +4,7 @@
 #include "core/nearest_name.hpp"
 #include "core/scene_keys.hpp"
 #include "core/scene_limits.hpp"
+#include "core/scene_name.hpp"
 
 #include <fmt/format.h>
 
@@ -16,27 +17,6 @@ namespace {
 
 constexpr std::string_view shape_names[] = {"sphere", "box", "half-space"};
 constexpr std::string_view collision_names[] = {"square", "round"};
-constexpr std::size_t longest_name = 64;
-
-bool is_name(const std::string& text) {
-  const auto allowed = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '-' || c == ' ';
-  };
-  return !text.empty() && text.size() <= longest_name && text.front() != ' ' &&
-         text.back() != ' ' && std::all_of(text.begin(), text.end(), allowed);
-}
-
-std::string read_name(const TableReader& table) {
-  const Item item = table.need("name", "a name, unique in the scene");
-  if (!is_name(item.text())) {
-    item.fail(
-        fmt::format("\"{}\" is no name; allowed: 1 to {} letters (a-z, A-Z), digits, _, - "
-                    "and inner spaces",
-                    item.text(), longest_name));
-  }
-  return item.text();
-}
 
 const EntityType& read_entity_type(const TableReader& table) {
   std::vector<std::string_view> kinds;
@@ -238,7 +218,7 @@ Body read_body(const Item& item, const BodyDefaults& defaults) {
   const TableReader table(item);
   Body body;
   body.line = item.value().line;
-  body.name = read_name(table);
+  body.name = read_name(table.need("name", "a name, unique in the scene"));
   const EntityType& type = read_entity_type(table);
   refuse_unknown_keys(table, type);
   body.entity = make_entity(table, type);
@@ -265,13 +245,6 @@ Body read_body(const Item& item, const BodyDefaults& defaults) {
     read_fixed_or_driven(table, body, type, defaults.directory);
   }
   return body;
-}
-
-std::string body_path(const Value& body, std::size_t index) {
-  const Table* table = body.table();
-  const Value* name = table == nullptr ? nullptr : table->find("name");
-  const auto* text = name == nullptr ? nullptr : std::get_if<std::string>(&name->data);
-  return text != nullptr && is_name(*text) ? "body." + *text : fmt::format("body[{}]", index);
 }
 
 }  // namespace core

@@ -19,8 +19,6 @@ inline constexpr std::string_view bounds_names[] = {"shape", "obb"};
 
 /// Reads one `[[body]]`. Throws `InputError`.
 [[nodiscard]] Body read_body(const Item& item, const BodyDefaults& defaults);
-/// Path of a body in messages and overrides: `body.ball`, or `body[2]` where it has no name.
-[[nodiscard]] std::string body_path(const Value& body, std::size_t index);
 
 }  // namespace core
 }  // namespace kairos

@@ -11,6 +11,8 @@ ExactSolutionType elastic_drop();
 ExactSolutionType inelastic_drop();
 ExactSolutionType equal_masses();
 ExactSolutionType reflection();
+ExactSolutionType drag_drop();
+ExactSolutionType oscillator();
 
 }  // namespace exact
 
@@ -20,6 +22,8 @@ std::span<const ExactSolutionType> exact_solution_catalogue() {
       exact::inelastic_drop(),
       exact::equal_masses(),
       exact::reflection(),
+      exact::drag_drop(),
+      exact::oscillator(),
   };
   return catalogue;
 }

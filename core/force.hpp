@@ -3,6 +3,7 @@
 #include "core/instant.hpp"
 #include "core/state.hpp"
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -35,6 +36,12 @@ class Force {
   [[nodiscard]] virtual double potential(Instant t, std::span<const BodyState> bodies) const = 0;
   /// True if `potential` tells the whole work of the force.
   [[nodiscard]] virtual bool conservative() const = 0;
+  /// Whether it turns its bodies or depends on how they turn, so that rotation is integrated. A
+  /// force that does not say may.
+  [[nodiscard]] virtual bool involves_rotation() const { return true; }
+  /// N, on each of its bodies, of a force that is the same whatever state and time, through the
+  /// origin and of potential -F.p: it leaves motions closed-form. nullopt otherwise.
+  [[nodiscard]] virtual std::optional<Vector3> uniform() const { return std::nullopt; }
   [[nodiscard]] virtual std::string description() const = 0;
 };
 

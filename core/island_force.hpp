@@ -21,6 +21,7 @@ class IslandForce : public Force {
   void add(Instant t, std::span<const BodyState> bodies, std::span<Wrench> wrenches) const override;
   [[nodiscard]] double potential(Instant t, std::span<const BodyState> bodies) const override;
   [[nodiscard]] bool conservative() const override { return force_->conservative(); }
+  [[nodiscard]] bool involves_rotation() const override { return force_->involves_rotation(); }
   [[nodiscard]] std::string description() const override { return force_->description(); }
 
  private:

@@ -88,6 +88,7 @@ Model::Model(Scene scene, const ModelOptions& options)
     : scene_(std::move(scene)), options_(options) {
   check_scene(scene_);
   choose_bodies();
+  choose_forces();
   choose_rotation();
   choose_pairs();
   choose_islands();
@@ -126,13 +127,35 @@ void Model::choose_bodies() {
   decide(tally.decisions("bodies"));
 }
 
+/// What acts beside gravity. A uniform force joins gravity, so that its bodies fall on parabolas.
+void Model::choose_forces() {
+  Tally tally;
+  turned_by_force_.assign(size(), false);
+  for (const SceneForce& force : scene_.forces) {
+    const std::optional<Vector3> uniform = force.force->uniform();
+    std::string names;
+    for (const BodyIndex i : force.bodies) {
+      names += (names.empty() ? "" : " and ") + body(i).name;
+      gravity_force_[i] += uniform.value_or(Vector3::Zero());
+      turned_by_force_[i] = turned_by_force_[i] || force.force->involves_rotation();
+    }
+    tally.add(force.force->description(), names,
+              uniform ? "the scene asks for it; the same everywhere, it joins gravity"
+              : force.force->conservative()
+                  ? "the scene asks for it; it keeps energy, as its potential"
+                  : "the scene asks for it; its work is told in the energy ledger");
+  }
+  decide(tally.decisions("forces"));
+}
+
 /// Whose orientation is integrated at all.
 void Model::choose_rotation() {
   Tally tally;
   for (BodyIndex i = 0; i < size(); ++i) {
     const Body& b = body(i);
     const bool could = is_free(i) && (b.entity->rotates() || is_sphere(shape(i)));
-    const bool matters = is_free(i) && b.entity->rotates() && !is_sphere(shape(i));
+    const bool matters =
+        is_free(i) && b.entity->rotates() && (!is_sphere(shape(i)) || turned_by_force_[i]);
     rotates_.push_back(options_.leave_out_orientation ? matters : could);
     inertia_.push_back({is_free(i) ? b.mass : -1.0, is_free(i) ? b.inertia : Vector3::Zero().eval(),
                         rotates_[i], is_free(i) ? bounding_radius(shape(i)) : 0.0});
@@ -144,7 +167,9 @@ void Model::choose_rotation() {
               : fmt::format("a {} does not turn", b.entity->kind()));
     } else if (is_free(i)) {
       tally.add("orientation is kept", b.name,
-                matters ? "impacts can turn it" : "leaving it out is switched off");
+                turned_by_force_[i] ? "a force turns it or depends on how it turns"
+                : matters           ? "impacts can turn it"
+                                    : "leaving it out is switched off");
     }
   }
   decide(tally.decisions("rotation"));
@@ -225,8 +250,8 @@ void Model::choose_islands() {
                        fmt::format("acts on {} bodies; allowed: at most {}", force.bodies.size(),
                                    IslandForce::most_bodies));
     }
-    if (force.bodies.empty()) {
-      continue;
+    if (force.bodies.empty() || force.force->uniform()) {
+      continue;  // nothing to do, or part of gravity
     }
     Island& island = islands_[island_of_[force.bodies.front()]];
     std::vector<std::size_t> places;

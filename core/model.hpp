@@ -48,7 +48,7 @@ class Model {
   [[nodiscard]] bool is_field(BodyIndex i) const { return entity(i).is_field(); }
   /// Inertia as islands and impact laws see it; mass -1 for bodies that are not free.
   [[nodiscard]] const BodyInertia& inertia(BodyIndex i) const { return inertia_[i]; }
-  /// Gravity on body i, N (0 for bodies that are not free).
+  /// Gravity on body i and what else is uniform (buoyancy), N; 0 for bodies that are not free.
   [[nodiscard]] const Vector3& gravity_force(BodyIndex i) const { return gravity_force_[i]; }
 
   /// Pairs to test, in the order of creation: those that can ever interact; with `prune_pairs` off
@@ -69,7 +69,7 @@ class Model {
 
   /// Bodies at t = 0; driven bodies where their drive puts them.
   [[nodiscard]] State initial_state() const;
-  /// Potential energy of gravity of body i, J (0 at y = 0).
+  /// Potential energy of body i under that force, J (0 at the origin).
   [[nodiscard]] double gravity_potential(BodyIndex i, const Vector3& position) const {
     return -gravity_force_[i].dot(position);
   }
@@ -79,6 +79,7 @@ class Model {
 
  private:
   void choose_bodies();
+  void choose_forces();
   void choose_rotation();
   void choose_pairs();
   [[nodiscard]] Decision choose_broad_phase();
@@ -95,6 +96,7 @@ class Model {
   std::vector<bool> rotates_;
   std::vector<BodyInertia> inertia_;
   std::vector<Vector3> gravity_force_;
+  std::vector<bool> turned_by_force_;  ///< a force involves its rotation
   std::vector<BodyPair> pairs_;
   std::vector<bool> interacts_;
   std::vector<Island> islands_;

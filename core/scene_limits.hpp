@@ -18,6 +18,14 @@ inline constexpr Range inertia{.lowest = 0.0, .highest = 1e60, .above = true, .u
 inline constexpr Range G{.lowest = 0.0, .highest = 1e12, .unit = "m/s^2 or N"};
 inline constexpr Range restitution{.lowest = 0.0, .highest = 1.0};
 inline constexpr Range scale{.lowest = 0.0, .highest = 1e6, .above = true};
+inline constexpr Range density{.lowest = 0.0, .highest = 1e12, .unit = "kg/m^3"};
+inline constexpr Range coefficient{.lowest = 0.0, .highest = 1e6};
+inline constexpr Range area{.lowest = 0.0, .highest = 1e25, .unit = "m^2"};
+inline constexpr Range volume{.lowest = 0.0, .highest = 1e37, .unit = "m^3"};
+inline constexpr Range length{.lowest = 0.0, .highest = 1e12, .unit = "m"};
+inline constexpr Range stiffness{.lowest = 0.0, .highest = 1e30, .unit = "N/m"};
+inline constexpr Range damping{.lowest = 0.0, .highest = 1e30, .unit = "kg/s"};
+inline constexpr Range rotational_damping{.lowest = 0.0, .highest = 1e30, .unit = "kg m^2/s"};
 inline constexpr Range component{.lowest = -1e12, .highest = 1e12};
 inline constexpr Range angle{.lowest = -1e6, .highest = 1e6, .unit = "rad"};
 inline constexpr Range frequency{.lowest = 0.0, .highest = 1e9, .above = true, .unit = "Hz"};

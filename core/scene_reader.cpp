@@ -2,17 +2,16 @@
 #include "core/document.hpp"
 #include "core/error.hpp"
 #include "core/exact_solution.hpp"
+#include "core/force_reader.hpp"
 #include "core/overrides.hpp"
 #include "core/scene.hpp"
 #include "core/scene_keys.hpp"
 #include "core/scene_limits.hpp"
+#include "core/scene_name.hpp"
 #include "core/table_reader.hpp"
-
-#include <fmt/format.h>
 
 #include <filesystem>
 #include <limits>
-#include <map>
 
 namespace kairos {
 inline namespace core {
@@ -69,20 +68,27 @@ ExactSolution read_exact(const Item& item) {
 
 void read_bodies(const Item& item, const BodyDefaults& defaults, Scene& scene) {
   const Array& array = item.array();
-  std::map<std::string, int> lines;
+  UniqueNames names;
   for (std::size_t i = 0; i < array.size(); ++i) {
-    const Item element(array[i], body_path(array[i], i));
-    Body body = read_body(element, defaults);
-    const auto [first, is_new] = lines.emplace(body.name, body.line);
-    if (!is_new) {
-      TableReader(element).fail("name", fmt::format("\"{}\" is the name of the body of line {} "
-                                                    "already; allowed: a name of its own",
-                                                    body.name, first->second));
-    }
-    scene.bodies.push_back(std::move(body));
+    const Item element(array[i], element_path("body", array[i], i));
+    scene.bodies.push_back(read_body(element, defaults));
+    names.add(*TableReader(element).find("name"), "body", array[i].line);
   }
   if (scene.bodies.empty()) {
     item.fail("is empty; needed: at least one [[body]]");
+  }
+}
+
+void read_forces(const Item& item, double G, Scene& scene) {
+  const Array& array = item.array();
+  UniqueNames names;
+  for (std::size_t i = 0; i < array.size(); ++i) {
+    const Item element(array[i], element_path("force", array[i], i));
+    read_force(element, G, scene);
+    if (const auto name = TableReader(element).find("name")) {
+      (void)read_name(*name);
+      names.add(*name, "force", array[i].line);
+    }
   }
 }
 
@@ -114,6 +120,9 @@ Scene read(const TableReader& table, const std::string& path) {
     defaults.bounds = static_cast<Bounds>(bounds->choice(bounds_names));
   }
   read_bodies(table.need("body", "at least one [[body]]"), defaults, scene);
+  if (const auto force = table.find("force")) {
+    read_forces(*force, defaults.G, scene);
+  }
   if (const auto exact = table.find("exact")) {
     scene.exact = read_exact(*exact);
   }

@@ -103,10 +103,8 @@ std::unique_ptr<const ExactMotion> solve(const Scene& scene) {
   const Body& floor = scene.bodies[1 - balls.front()];
   const auto* sphere = std::get_if<Sphere>(&ball.shape);
   need(sphere != nullptr, scene, "a sphere");
-  need(std::holds_alternative<HalfSpace>(floor.shape) && floor.drive == nullptr &&
-           floor.entity->physics_type() == PhysicsType::wall &&
-           half_space_normal(floor.initial.pose) == Vector3::UnitY(),
-       scene, "a floor: a half-space that is a wall at rest with its normal upwards");
+  need(is_floor(floor), scene,
+       "a floor: a half-space that is a wall at rest with its normal upwards");
   const Vector3 fall = gravity(scene, ball);
   need(fall.y() < 0.0, scene, "gravity downwards");
   const double y = floor.initial.pose.position.y();

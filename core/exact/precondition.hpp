@@ -28,6 +28,16 @@ inline std::vector<BodyIndex> free_bodies(const Scene& scene) {
   return result;
 }
 
+/// A half-space that is a wall at rest.
+inline bool is_plane(const Body& body) {
+  return std::holds_alternative<HalfSpace>(body.shape) && body.drive == nullptr &&
+         body.entity->physics_type() == PhysicsType::wall;
+}
+/// One with its normal upwards.
+inline bool is_floor(const Body& body) {
+  return is_plane(body) && half_space_normal(body.initial.pose) == Vector3::UnitY();
+}
+
 /// Acceleration of gravity on a body, m/s^2.
 inline Vector3 gravity(const Scene& scene, const Body& body) {
   const double size = scene.gravity == GravityMode::force ? body.G / body.mass : body.G;

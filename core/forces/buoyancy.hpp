@@ -21,6 +21,10 @@ class Buoyancy final : public Force {
   void add(Instant t, std::span<const BodyState> bodies, std::span<Wrench> wrenches) const override;
   [[nodiscard]] double potential(Instant t, std::span<const BodyState> bodies) const override;
   [[nodiscard]] bool conservative() const override { return true; }
+  [[nodiscard]] bool involves_rotation() const override { return !centre_B_.isZero(0.0); }
+  [[nodiscard]] std::optional<Vector3> uniform() const override {
+    return centre_B_.isZero(0.0) ? std::optional(force_) : std::nullopt;
+  }
   [[nodiscard]] std::string description() const override { return "buoyancy"; }
 
  private:

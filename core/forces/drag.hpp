@@ -21,7 +21,11 @@ class QuadraticDrag final : public Force {
   void add(Instant t, std::span<const BodyState> bodies, std::span<Wrench> wrenches) const override;
   [[nodiscard]] double potential(Instant t, std::span<const BodyState> bodies) const override;
   [[nodiscard]] bool conservative() const override { return false; }
+  [[nodiscard]] bool involves_rotation() const override { return false; }
   [[nodiscard]] std::string description() const override { return "quadratic drag"; }
+  /// rho Cd A / 2, kg/m.
+  [[nodiscard]] double coefficient() const { return coefficient_; }
+  [[nodiscard]] const Vector3& wind() const { return wind_; }
 
  private:
   double coefficient_;  ///< rho Cd A / 2, kg/m
@@ -43,6 +47,7 @@ class LinearDrag final : public Force {
   void add(Instant t, std::span<const BodyState> bodies, std::span<Wrench> wrenches) const override;
   [[nodiscard]] double potential(Instant t, std::span<const BodyState> bodies) const override;
   [[nodiscard]] bool conservative() const override { return false; }
+  [[nodiscard]] bool involves_rotation() const override { return parameters_.rotational != 0.0; }
   [[nodiscard]] std::string description() const override { return "linear drag"; }
 
  private:

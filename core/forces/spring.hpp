@@ -29,9 +29,16 @@ class Spring final : public Force {
   void add(Instant t, std::span<const BodyState> bodies, std::span<Wrench> wrenches) const override;
   [[nodiscard]] double potential(Instant t, std::span<const BodyState> bodies) const override;
   [[nodiscard]] bool conservative() const override { return parameters_.damping == 0.0; }
-  [[nodiscard]] std::string description() const override {
-    return conservative() ? "spring" : "spring and damper";
+  [[nodiscard]] bool involves_rotation() const override {
+    return !parameters_.point_A.isZero(0.0) || !parameters_.point_B.isZero(0.0);
   }
+  [[nodiscard]] std::string description() const override {
+    return conservative()                 ? "spring"
+           : parameters_.stiffness == 0.0 ? "damper"
+                                          : "spring and damper";
+  }
+
+  [[nodiscard]] const Parameters& parameters() const { return parameters_; }
 
  private:
   struct Ends {

@@ -177,8 +177,9 @@ void EventWorld::land(BodyIndex a, BodyIndex b, const Contact& contact, Instant 
       continue;
     }
     const double rebound = support->normal.dot(now_[ball].twist.linear - under.twist(s).linear);
-    const double pressing =
-        support->normal.dot(under.acceleration(s) - net_force(ball) / model_.inertia(ball).mass);
+    const double pressing = support->normal.dot(under.acceleration(s) -
+                                                acting_force(ball, t, now_[ball], net_force(ball)) /
+                                                    model_.inertia(ball).mass);
     if (pressing > 0.0 && rebound * rebound <= 2.0 * pressing * tolerance) {
       return settle(ball, *support, rebound, pressing, e, t);
     }
@@ -271,7 +272,8 @@ void EventWorld::resume_support(BodyIndex i, Instant t) {
   const double s = std::min(t - under.start, under.duration);
   const double away = support.normal.dot(now_[i].twist.linear - under.twist(s).linear);
   const double pressing = support.normal.dot(
-      under.acceleration(s) - (model_.gravity_force(i) + fields_at(i)) / model_.inertia(i).mass);
+      under.acceleration(s) -
+      acting_force(i, t, now_[i], model_.gravity_force(i) + fields_at(i)) / model_.inertia(i).mass);
   const double tolerance = rest_tolerance(i, support.surface, 0.0);
   if (pressing > 0.0 && away * away <= 2.0 * pressing * tolerance) {
     const double ground = support.normal.dot(under.twist(s).linear);

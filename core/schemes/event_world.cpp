@@ -119,6 +119,15 @@ Vector3 EventWorld::net_force(BodyIndex i) const {
   return model_.gravity_force(i) + field_forces_[i];
 }
 
+Vector3 EventWorld::acting_force(BodyIndex i, Instant t, const BodyState& state,
+                                 const Vector3& constant) const {
+  Wrench wrench{constant, Vector3::Zero()};
+  for (const Force* force : model_.islands()[model_.island_of(i)].forces) {
+    force->add(t, {&state, 1}, {&wrench, 1});
+  }
+  return wrench.force;
+}
+
 void EventWorld::set_forces(Flow& flow) {
   flow.island.forces = model_.islands()[model_.island_of(flow.island.bodies.front())].forces;
   flow.support.reset();
@@ -211,6 +220,17 @@ void EventWorld::hold(Flow& flow, Instant t) {
       recorder_.motion(i, actor.motion);
     }
   }
+  if (!model_.islands()[model_.island_of(i)].forces.empty()) {
+    const Vector3& n = actor.support->normal;
+    until = std::min(
+        until, release_time(
+                   [&](double s) {
+                     const BodyState state{actor.motion.pose(s), actor.motion.twist(s)};
+                     const Vector3 force = acting_force(i, t + s, state, net_force(i));
+                     return n.dot(flow.island.inertia[0].mass * under.acceleration(s) - force);
+                   },
+                   std::min(until, left)));
+  }
   if (t + until < end_) {
     push(t + until, Due::support_ends, i, surface);
   }
@@ -237,7 +257,12 @@ void EventWorld::segment_end(BodyIndex i, Instant t) {
   }
   Flow& flow = flow_of(i);
   book(flow, t);
-  next_segment(flow, t);
+  if (actors_[i].support) {
+    now_[i] = state_at(i, t);  // where its surface took it, which the stepper does not know
+    launch(i, t);
+  } else {
+    next_segment(flow, t);
+  }
   for (const BodyIndex k : flow.island.bodies) {
     predict(k, t);
   }
@@ -250,11 +275,14 @@ void EventWorld::book(Flow& flow, Instant t) {
   if (!(duration > 0.0)) {
     return;
   }
-  for (const BodyIndex i : flow.island.bodies) {
-    now_[i] = state_at(i, t);
+  const BodyIndex first = flow.island.bodies.front();
+  // At its end a segment is where the stepper left it, which its motion tells up to roundoff.
+  const bool whole = !(actors_[first].motion.end() - t > 0.0) && !actors_[first].support;
+  for (std::size_t k = 0; k < flow.states.size(); ++k) {
+    const BodyIndex i = flow.island.bodies[k];
+    now_[i] = whole ? flow.states[k] : state_at(i, t);
   }
   double riding = 0.0;
-  const BodyIndex first = flow.island.bodies.front();
   if (const auto& support = actors_[first].support;
       support && model_.mobility(support->surface) == Mobility::driven) {
     // The normal force m a_s.n - F.n, integrated over the surface's displacement along n.

@@ -73,7 +73,10 @@ class EventWorld {
   void hold(Flow& flow, Instant t);  ///< keeps a supported ball on its surface
   [[nodiscard]] BodyState state_at(BodyIndex i, Instant t) const;
   [[nodiscard]] Vector3 fields_at(BodyIndex i) const;
-  [[nodiscard]] Vector3 net_force(BodyIndex i) const;
+  [[nodiscard]] Vector3 net_force(BodyIndex i) const;  ///< the constant ones, N
+  /// `constant` and what depends on the state, of a body that is alone in its island, N.
+  [[nodiscard]] Vector3 acting_force(BodyIndex i, Instant t, const BodyState& state,
+                                     const Vector3& constant) const;
 
   // Predictions
   void predict(BodyIndex i, Instant t) { predict(i, t, i); }

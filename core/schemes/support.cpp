@@ -129,6 +129,25 @@ double lift_off_time(const Motion& surface_motion, const Vector3& normal, double
   return first_positive(missing, surface_motion.duration);
 }
 
+double release_time(const std::function<double(double)>& contact_force, double duration) {
+  constexpr int samples = 32;
+  constexpr int halvings = 60;  // beyond the resolution of a double
+  double pressing = 0.0;
+  for (int k = 0; k <= samples; ++k) {
+    double free = duration * k / samples;
+    if (contact_force(free) >= 0.0) {
+      pressing = free;
+      continue;
+    }
+    for (int i = 0; i < halvings && k > 0; ++i) {
+      const double middle = 0.5 * (pressing + free);
+      (contact_force(middle) < 0.0 ? free : pressing) = middle;
+    }
+    return free;
+  }
+  return infinity;
+}
+
 Motion ride(const Motion& along_surface, const Motion& surface_motion, const Vector3& normal) {
   Motion motion = along_surface;
   motion.duration = std::min(motion.duration, surface_motion.duration);

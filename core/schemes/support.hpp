@@ -4,6 +4,7 @@
 #include "core/model.hpp"
 #include "core/motion.hpp"
 
+#include <functional>
 #include <optional>
 
 namespace kairos {
@@ -34,6 +35,11 @@ struct Support {
 [[nodiscard]] double lift_off_time(const Motion& surface_motion, const Vector3& normal, double mass,
                                    const Vector3& force);
 
+/// When a surface first stops pressing, s: the first change of sign of the contact force (N, at a
+/// local time) within `duration`, among 32 samples; infinite if it presses at all of them.
+[[nodiscard]] double release_time(const std::function<double(double)>& contact_force,
+                                  double duration);
+
 /// Lets a motion along a surface ride with it: along the normal it moves as the surface does. Both
 /// motions start together; the surface does not turn.
 [[nodiscard]] Motion ride(const Motion& along, const Motion& surface_motion, const Vector3& normal);
@@ -46,6 +52,7 @@ class SupportForce final : public Force {
   void add(Instant t, std::span<const BodyState> bodies, std::span<Wrench> wrenches) const override;
   [[nodiscard]] double potential(Instant, std::span<const BodyState>) const override { return 0.0; }
   [[nodiscard]] bool conservative() const override { return true; }
+  [[nodiscard]] bool involves_rotation() const override { return false; }
   [[nodiscard]] std::string description() const override { return "support"; }
 
  private:

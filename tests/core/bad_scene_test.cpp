@@ -95,6 +95,80 @@ const std::vector<BadScene> top_level = {
     {floor_lines + "[exact]\nH = 1", 6, "exact.H", "unknown key"},
 };
 
+/// Lines 1 to 14: a floor, a ball and a box; a force begins at line 15.
+const std::string three_bodies = floor_lines + ball_lines + body_lines;
+const std::string drag_lines = three_bodies + "[[force]]\nkind = \"quadratic-drag\"\n";
+const std::string linear_lines = three_bodies + "[[force]]\nkind = \"linear-drag\"\n";
+const std::string spring_lines =
+    three_bodies + "[[force]]\nname = \"tether\"\nkind = \"spring\"\nstiffness = 2\n";
+
+const std::vector<BadScene> forces = {
+    {three_bodies + "force = 1", 15, "body.box.force", "unknown key"},
+    {"force = 1\n" + three_bodies, 1, "force", "a whole number; allowed: an array"},
+    {three_bodies + "[force]\nkind = \"spring\"", 15, "force", "allowed: an array"},
+    {three_bodies + "[[force]]", 15, "force[0].kind", "missing"},
+    {three_bodies + "[[force]]\nkind = \"drag\"", 16, "force[0].kind", "quadratic-drag"},
+    {three_bodies + "[[force]]\nkind = \"sprng\"", 16, "force[0].kind", "did you mean \"spring\""},
+    {three_bodies + "[[force]]\nkind = 1", 16, "force[0].kind", "a whole number"},
+    {drag_lines + "name = \"\"", 17, "force[0].name", "no name"},
+    {drag_lines + "name = \"air\"\n[[force]]\nkind = \"quadratic-drag\"\nname = \"air\"", 20,
+     "force.air.name", "line 15"},
+    {drag_lines + "densty = 1", 17, "force[0].densty", "did you mean \"density\""},
+    {drag_lines + "stiffness = 1", 17, "force[0].stiffness", "unknown key"},
+    {drag_lines + "density = -1", 17, "force[0].density", "is -1; allowed: a number from 0"},
+    {drag_lines + "density = nan", 17, "force[0].density", "is nan"},
+    {drag_lines + "density = inf", 17, "force[0].density", "is inf"},
+    {drag_lines + "density = \"thick\"", 17, "force[0].density", "a string"},
+    {drag_lines + "drag_coefficient = -0.1", 17, "force[0].drag_coefficient", "is -0.1"},
+    {drag_lines + "area = -1e-9", 17, "force[0].area", "is -1e-09"},
+    {drag_lines + "wind = [1, 2]", 17, "force[0].wind", "an array of 2"},
+    {drag_lines + "wind = [1, nan, 2]", 17, "force[0].wind[1]", "is nan"},
+    {drag_lines + "bodies = \"ball\"", 17, "force[0].bodies", "a string; allowed: an array"},
+    {drag_lines + "bodies = []", 17, "force[0].bodies", "ball, box"},
+    {drag_lines + "bodies = [\"bal\"]", 17, "force[0].bodies[0]", "did you mean \"ball\""},
+    {drag_lines + "bodies = [\"ball\", \"moon\"]", 17, "force[0].bodies[1]", "does not exist"},
+    {drag_lines + "bodies = [\"ball\", \"ball\"]", 17, "force[0].bodies[1]", "named twice"},
+    {drag_lines + "bodies = [1]", 17, "force[0].bodies[0]", "a whole number"},
+    {drag_lines + "bodies = [\"floor\"]", 17, "force[0].bodies", "not moved by forces"},
+    {floor_lines + "[[force]]\nkind = \"quadratic-drag\"", 5, "force[0]", "acts on nothing"},
+    {linear_lines, 15, "force[0].coefficient", "missing"},
+    {linear_lines + "coefficient = -1", 17, "force[0].coefficient", "is -1"},
+    {linear_lines + "coefficient = 1\nrotational = -1", 18, "force[0].rotational", "is -1"},
+    {linear_lines + "coefficient = 1\nrotational = 1\nbodies = [\"ball\"]", 19, "force[0].bodies",
+     "does not turn"},
+    {three_bodies + "[[force]]\nkind = \"magnus-lift\"\nbodies = [\"ball\"]", 17, "force[0].bodies",
+     "allowed: the entity \"body\""},
+    {three_bodies + "[[force]]\nkind = \"magnus-lift\"\nbodies = [\"box\"]", 15, "force[0].radius",
+     "missing"},
+    {three_bodies + "[[force]]\nkind = \"buoyancy\"\nvolume = -1", 17, "force[0].volume", "is -1"},
+    {three_bodies + "[[force]]\nkind = \"buoyancy\"\ncentre = [0, inf, 0]", 17,
+     "force[0].centre[1]", "is inf"},
+    {"gravity = \"force\"\n" + three_bodies + "[[force]]\nkind = \"buoyancy\"", 16, "force[0].G",
+     "missing"},
+    {spring_lines, 15, "force.tether.bodies", "missing"},
+    {spring_lines + "bodies = [\"ball\"]", 15, "force.tether.anchor", "missing"},
+    {spring_lines + "bodies = [\"floor\"]", 19, "force.tether.bodies", "not moved by forces"},
+    {spring_lines + "bodies = [\"floor\", \"ball\"]", 19, "force.tether.bodies", "first"},
+    {spring_lines + "bodies = [\"ball\", \"box\", \"floor\"]", 19, "force.tether.bodies",
+     "3 bodies; allowed: 1 or 2"},
+    {spring_lines + "bodies = [\"ball\", \"box\"]\nanchor = [0, 0, 0]", 20, "force.tether.anchor",
+     "two bodies"},
+    {spring_lines + "bodies = [\"ball\"]\nanchor = [0, 0, 0]\npoint_b = [0, 0, 0]", 21,
+     "force.tether.point_b", "one body"},
+    {spring_lines + "bodies = [\"ball\"]\nanchor = [0, nan, 0]", 20, "force.tether.anchor[1]",
+     "is nan"},
+    {spring_lines + "bodies = [\"ball\", \"box\"]\npoint_a = [1, 0, 0]", 19, "force.tether.bodies",
+     "does not turn"},
+    {spring_lines + "bodies = [\"ball\"]\nanchor = [0, 0, 0]\ndamping = -1", 21,
+     "force.tether.damping", "is -1"},
+    {spring_lines + "bodies = [\"ball\"]\nanchor = [0, 0, 0]\nrest_length = -1", 21,
+     "force.tether.rest_length", "is -1"},
+    {three_bodies + "[[force]]\nkind = \"spring\"\nbodies = [\"box\"]\nanchor = [0, 0, 0]", 15,
+     "force[0].stiffness", "missing"},
+    {three_bodies + "[[force]]\nkind = \"damper\"\nbodies = [\"box\"]\nstiffness = 1", 18,
+     "force[0].stiffness", "unknown key"},
+};
+
 const std::vector<BadScene> not_toml = {
     {"duration 3", 1, "", "not TOML"},
     {"duration = 1\nduration = 2", 2, "", "not TOML"},
@@ -210,6 +284,12 @@ TEST_CASE("bad scenes: what is no TOML", "[scene][input]") {
 
 TEST_CASE("bad scenes: bodies", "[scene][input]") {
   for (const BadScene& bad : bodies) {
+    check_refused(bad);
+  }
+}
+
+TEST_CASE("bad scenes: forces", "[scene][input]") {
+  for (const BadScene& bad : forces) {
     check_refused(bad);
   }
 }

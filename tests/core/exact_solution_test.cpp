@@ -111,3 +111,66 @@ TEST_CASE("exact solutions: a scene that is another one is told so", "[exact]") 
     CHECK_THROWS_AS(solve_exactly(read_scene(bounce, {change})), InputError);
   }
 }
+
+TEST_CASE("drag drop: the table-tennis ball's first impact, and the energy of every bounce",
+          "[exact]") {
+  const Scene scene = read_scene(scenes + "drag-drop.toml");
+  const auto exact = solve_exactly(scene);
+  REQUIRE(exact != nullptr);
+  const double first = *exact->impact_time(1);
+  CHECK(first == Approx(0.4610370640415288).epsilon(1e-15));
+  CHECK(exact->state(1, Instant{first})->twist.linear.y() ==
+        Approx(-4.165174324051543).epsilon(1e-13));
+  // Continuous in height, e of the speed; between impacts the path obeys v' = -g - k |v| v / m:
+  // central differences, O(dt^2) + eps/dt.
+  const double k_m = 0.5 * 1.2 * 0.45 * 3.14159265358979323846 * 4e-4 / 2.7e-3;
+  for (const std::int64_t k : {1, 2, 3, 7}) {
+    const double t = *exact->impact_time(k), next = *exact->impact_time(k + 1);
+    const BodyState before = *exact->state(1, Instant{t - 1e-10});
+    const BodyState after = *exact->state(1, Instant{t + 1e-10});
+    CHECK(before.pose.position.y() == Approx(0.02).margin(1e-9));
+    CHECK(after.pose.position.y() == Approx(0.02).margin(1e-9));
+    CHECK(after.twist.linear.y() == Approx(-0.9 * before.twist.linear.y()).epsilon(1e-8));
+    for (const double fraction : {0.2, 0.45, 0.8}) {
+      const double now = t + fraction * (next - t), dt = 1e-5;
+      const double v = exact->state(1, Instant{now})->twist.linear.y();
+      const double slope = (exact->state(1, Instant{now + dt})->twist.linear.y() -
+                            exact->state(1, Instant{now - dt})->twist.linear.y()) /
+                           (2.0 * dt);
+      const double rise = (exact->state(1, Instant{now + dt})->pose.position.y() -
+                           exact->state(1, Instant{now - dt})->pose.position.y()) /
+                          (2.0 * dt);
+      CHECK(slope == Approx(-9.81 - k_m * std::abs(v) * v).epsilon(1e-8));
+      CHECK(rise == Approx(v).margin(1e-8));
+    }
+  }
+  CHECK_THROWS_AS(
+      solve_exactly(read_scene(scenes + "drag-drop.toml", {{"force[0].wind", "[1, 0, 0]"}})),
+      InputError);
+}
+
+TEST_CASE("oscillator: impacts of x'' = -x at -0.3, and its period", "[exact]") {
+  const auto exact = solve_exactly(read_scene(scenes + "oscillator.toml"));
+  REQUIRE(exact != nullptr);
+  const double first = 1.8754889808103;
+  for (const std::int64_t k : {1, 2, 10, 100}) {
+    CHECK(*exact->impact_time(k) ==
+          Approx((2.0 * static_cast<double>(k) - 1.0) * first).epsilon(1e-13));
+  }
+  for (const double t : {0.0, 0.7, 1.8, 2.0, 3.7, 19.0, 1e4}) {
+    const BodyState s = *exact->state(1, Instant{t});
+    const double x = s.pose.position.x(), v = s.twist.linear.x();
+    INFO(t);
+    CHECK(x * x + v * v == Approx(1.0).epsilon(1e-14));
+    CHECK(x >= -0.3 - 1e-14);
+    const BodyState later = *exact->state(1, Instant{t} + 2.0 * *exact->impact_time(1));
+    CHECK(later.pose.position.x() == Approx(x).margin(1e-12));
+    CHECK(later.twist.linear.x() == Approx(v).margin(1e-12));
+  }
+  // Another phase: thrown from where it would have been 0.4 s later.
+  const auto shifted = solve_exactly(read_scene(
+      scenes + "oscillator.toml", {{"body.ball.position[0]", "0.9210609940028851"},
+                                   {"body.ball.velocity", "[-0.3894183423086505, 0, 0]"}}));
+  CHECK(*shifted->impact_time(3) == Approx(*exact->impact_time(3) - 0.4).epsilon(1e-14));
+  CHECK_FALSE(solve_exactly(read_scene(scenes + "spring.toml"))->impact_time(1).has_value());
+}

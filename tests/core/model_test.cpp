@@ -209,3 +209,71 @@ TEST_CASE("model: scenes made in code are checked too", "[model]") {
   refused([](Scene& s) { s.bodies[1].restitution = 2.0; }, "body.box.restitution");
   refused([](Scene& s) { s.forces = {{std::make_shared<const Spring>(), {0, 1}}}; }, "force");
 }
+
+TEST_CASE("model: forces of a scene couple, turn and join what they must", "[model]") {
+  const std::string bodies = R"(
+[[body]]
+name = "floor"
+entity = "wall"
+shape = "half-space"
+position = [0, -9, 0]
+[[body]]
+name = "a"
+entity = "ball"
+radius = 0.1
+mass = 2
+[[body]]
+name = "b"
+entity = "body"
+radius = 0.1
+mass = 3
+position = [1, 0, 0]
+[[body]]
+name = "c"
+entity = "ball"
+radius = 0.1
+mass = 4
+position = [2, 0, 0]
+)";
+  const std::string spring = "[[force]]\nkind = \"spring\"\nstiffness = 1\n";
+  {
+    const Model model(parse_scene(bodies + spring + "bodies = [\"a\", \"c\"]", ""));
+    CHECK(model.islands().size() == 2);  // a and c, b
+    CHECK(model.island_of(1) == model.island_of(3));
+    CHECK(model.islands()[model.island_of(1)].forces.size() == 1);
+    CHECK_FALSE(model.closed_form(model.island_of(1)));
+    CHECK(model.closed_form(model.island_of(2)));
+    CHECK(decided(model, "forces", "spring: \"a and c\""));
+    CHECK(decided(model, "islands", "2 bodies"));
+    CHECK(decided(model, "motion", "integrated: \"a\", \"c\""));
+  }
+  {  // A fixed body is an anchor: it couples nothing, and where it is counts.
+    const Model model(
+        parse_scene(bodies + spring + "bodies = [\"a\", \"floor\"]\npoint_b = [0, 1, 0]", ""));
+    CHECK(model.islands().size() == 3);
+    std::vector<Wrench> wrenches(1);
+    const Island& island = model.islands()[model.island_of(1)];
+    island.wrenches(Instant{}, std::vector<BodyState>{model.body(1).initial}, wrenches);
+    CHECK(wrenches[0].force == Vector3(0, -2 * 9.8 - 8, 0));
+  }
+  {  // Drag acts on each by itself, with its own area, and turns nothing.
+    const Model model(parse_scene(bodies + "[[force]]\nkind = \"quadratic-drag\"", ""));
+    CHECK(model.islands().size() == 3);
+    CHECK_FALSE(model.rotates(2));
+    CHECK(decided(model, "forces", "\"a\", \"b\", \"c\""));
+  }
+  {  // Lift needs the spin of a sphere, which nothing else asks for.
+    const Model model(
+        parse_scene(bodies + "[[force]]\nkind = \"magnus-lift\"\nbodies = [\"b\"]", ""));
+    CHECK(model.rotates(2));
+    CHECK(decided(model, "rotation", "orientation is kept: \"b\""));
+  }
+  {  // Buoyancy is the same everywhere: still a parabola.
+    const Model model(
+        parse_scene(bodies + "[[force]]\nkind = \"buoyancy\"\ndensity = 1000\nvolume = 1e-3", ""));
+    CHECK(model.closed_form(model.island_of(1)));
+    CHECK(model.islands()[model.island_of(1)].forces.empty());
+    CHECK((model.gravity_force(1) - Vector3(0, -9.8 * 2 + 9.8, 0)).norm() <= 1e-14);
+    CHECK(decided(model, "forces", "buoyancy"));
+  }
+}
