@@ -1,5 +1,7 @@
 #include "core/energy_ledger.hpp"
 
+#include "core/archive.hpp"
+
 namespace kairos {
 inline namespace core {
 
@@ -27,6 +29,12 @@ double EnergyLedger::unexplained() const {
     rest.add(-line.value());
   }
   return rest.value();
+}
+
+void CompensatedSum::persist(Archive& archive) { archive(sum_, correction_); }
+
+void EnergyLedger::persist(Archive& archive) {
+  archive(initial_kinetic_, initial_potential_, kinetic_, potential_, lines_, flow_);
 }
 
 }  // namespace core

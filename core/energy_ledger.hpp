@@ -8,6 +8,8 @@
 namespace kairos {
 inline namespace core {
 
+class Archive;
+
 /// Where energy came from or went to. Each line has a formula of its own; none is the remainder.
 enum class EnergyLine : std::size_t {
   field_work,   ///< fields that have no potential (pad, drag): integral of F dp along the Motion
@@ -31,6 +33,7 @@ class CompensatedSum {
     sum_ = t;
   }
   [[nodiscard]] double value() const { return sum_ + correction_; }
+  void persist(Archive& archive);
 
  private:
   double sum_ = 0.0;
@@ -66,6 +69,7 @@ class EnergyLedger {
   [[nodiscard]] double flow() const { return flow_.value(); }
   /// What no line explains; a test holds it below 8 eps of `flow()`.
   [[nodiscard]] double unexplained() const;
+  void persist(Archive& archive);
 
  private:
   double initial_kinetic_ = 0.0;

@@ -1,5 +1,7 @@
 #include "core/force.hpp"
 
+#include "core/archive.hpp"
+
 #include <cassert>
 
 namespace kairos {
@@ -34,6 +36,8 @@ Vector3 angular_acceleration(const BodyInertia& inertia, const BodyState& state,
       (torque_B.z() - (moments.y() - moments.x()) * w.x() * w.y()) / moments.z());
   return state.pose.orientation * acceleration_B;
 }
+
+void Wrench::persist(Archive& archive) { archive(force, torque); }
 
 }  // namespace core
 }  // namespace kairos

@@ -10,10 +10,14 @@
 namespace kairos {
 inline namespace core {
 
+class Archive;
+
 /// Force through the origin of a body and torque about it, world frame (N, N m).
 struct Wrench {
   Vector3 force = Vector3::Zero();
   Vector3 torque = Vector3::Zero();
+
+  void persist(Archive& archive);
 };
 
 /// Inertia of one body of an island.

@@ -11,6 +11,8 @@
 namespace kairos {
 inline namespace core {
 
+class Archive;
+
 /// What a scheme does in a frame, for the flow diagrams of figs. 7 and 15.
 enum class Stage { draw, calculate_positions, restrict_movement, detect, handle, advance, locate };
 [[nodiscard]] std::string_view to_string(Stage stage);
@@ -38,6 +40,9 @@ class Recorder {
   virtual void event(const Event& /*event*/) {}
   /// A stage of the flow of events; `fraction` of the frame done (fig. 15).
   virtual void stage(Stage /*stage*/, double /*fraction*/) {}
+  /// Writes what it has gathered so far to a checkpoint, or reads it back (after `begin`). False,
+  /// and nothing done, where it cannot: its run then leaves no checkpoint.
+  virtual bool persist(Archive& /*archive*/) { return false; }
 };
 
 }  // namespace core

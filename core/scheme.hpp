@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/broad_phase.hpp"
+#include "core/checkpoint.hpp"
 #include "core/contact_detector.hpp"
 #include "core/impact_law.hpp"
 #include "core/recorder.hpp"
@@ -39,6 +40,8 @@ struct SchemeOptions {
   std::int64_t max_substeps = 100000;  ///< in one frame; more is refused with a reason
   double toi_tolerance = 0.0;          ///< m; 0: the detector's default
   bool roundoff = false;               ///< replay steps in double-double for the ledger's roundoff
+  CheckpointKeeper* keeper = nullptr;  ///< takes checkpoints; null: none are made
+  std::string_view resume = {};        ///< a checkpoint to go on from; empty: from the start
 };
 
 /// Counted work: what a run cost, whatever the machine.
@@ -51,6 +54,8 @@ struct Cost {
   std::int64_t toi_evaluations = 0;
   std::int64_t impacts = 0;
   std::int64_t events = 0;
+
+  void persist(Archive& archive);
 };
 
 enum class RunStatus {

@@ -11,6 +11,8 @@
 namespace kairos {
 inline namespace core {
 
+class Archive;
+
 struct StepperInfo {
   std::string_view name;
   int order = 0;           ///< of the step, for smooth forces; 0: exact
@@ -76,6 +78,10 @@ class Stepper {
   }
   /// Right-hand sides evaluated so far: the counted cost.
   [[nodiscard]] virtual std::int64_t evaluations() const = 0;
+  /// Writes or reads all that the next step, the last step's dense output and the counted cost
+  /// depend on; reading comes after `start` on the same island. False, and nothing done, where a
+  /// foreign solver keeps its memory to itself: see `JournaledStepper`.
+  virtual bool persist(Archive& /*archive*/) { return false; }
 };
 
 /// Makes one stepper per island.

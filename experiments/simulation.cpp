@@ -1,6 +1,8 @@
 #include "experiments/simulation.hpp"
 
+#include "core/archive.hpp"
 #include "core/error.hpp"
+#include "core/schemes/journaled_stepper.hpp"
 #include "experiments/metrics/penetration.hpp"
 #include "experiments/registry.hpp"
 
@@ -146,6 +148,10 @@ class FiniteGuard : public Recorder {
     inner_.event(event);
   }
   void stage(Stage stage, double fraction) override { inner_.stage(stage, fraction); }
+  bool persist(Archive& archive) override {
+    archive(last_.end, last_.state, last_.ledger, last_.cost);
+    return inner_.persist(archive);
+  }
 
   /// The run up to its last frame. Of its cost, frames and events are known.
   [[nodiscard]] RunResult stopped(std::string reason) && {
@@ -168,6 +174,14 @@ class FiniteGuard : public Recorder {
   RunResult last_;
 };
 
+void continue_as(const Continuation& continuation, Plan& plan) {
+  plan.options.keeper = continuation.keeper;
+  plan.options.resume = continuation.resume;
+  plan.method.stepper = [make = plan.method.stepper](const Model& model, std::size_t island) {
+    return make_persistent(make(model, island));
+  };
+}
+
 }  // namespace
 
 MethodChoice MethodChoice::thesis() { return {"original", "thesis-euler", "sat", "thesis"}; }
@@ -176,12 +190,16 @@ std::string why_refused(const Model& model, const RunChoice& choice) {
   return refusal(model, make_plan(model, choice));
 }
 
-RunResult simulate(const Model& model, const RunChoice& choice, Recorder& recorder) {
-  const Plan plan = make_plan(model, choice);
+RunResult simulate(const Model& model, const RunChoice& choice, Recorder& recorder,
+                   const Continuation& continuation) {
+  Plan plan = make_plan(model, choice);
   if (const std::string reason = refusal(model, plan); !reason.empty()) {
     throw InputError(model.scene().path, 0, "", reason);
   }
   refuse_overlap_at_start(model);
+  if (continuation.keeper != nullptr || !continuation.resume.empty()) {
+    continue_as(continuation, plan);
+  }
   FiniteGuard guard(recorder);
   try {
     return plan.scheme->run(model, plan.method, plan.options, guard);

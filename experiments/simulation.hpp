@@ -36,8 +36,17 @@ struct RunChoice {
   bool roundoff = false;
 };
 
-/// Resolves the names, refuses what cannot work (`InputError` with the reason), runs.
-RunResult simulate(const Model& model, const RunChoice& choice, Recorder& recorder);
+/// What a run that is interrupted leaves behind, and where it goes on from.
+struct Continuation {
+  CheckpointKeeper* keeper = nullptr;  ///< takes checkpoints; null: none are made
+  std::string_view resume = {};        ///< what a keeper was given; empty: from the start
+};
+
+/// Resolves the names, refuses what cannot work (`InputError` with the reason), runs. A checkpoint
+/// must be of the same model, choice and kind of recorder; throws `ArchiveError` where it is not
+/// one. `--duration` alone may differ.
+RunResult simulate(const Model& model, const RunChoice& choice, Recorder& recorder,
+                   const Continuation& continuation = {});
 
 /// The reason why this combination cannot run on this model; empty if it can.
 [[nodiscard]] std::string why_refused(const Model& model, const RunChoice& choice);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/archive.hpp"
 #include "core/force.hpp"
 
 #include <cstdint>
@@ -12,6 +13,8 @@ namespace kairos::integrators {
 struct Acceleration {
   Vector3 linear = Vector3::Zero();   ///< m/s^2
   Vector3 angular = Vector3::Zero();  ///< rad/s^2
+
+  void persist(Archive& archive) { archive(linear, angular); }
 };
 
 /// Evaluates the accelerations of an island and counts how often. Holds the scratch space, so that
@@ -20,6 +23,7 @@ class Accelerations {
  public:
   void resize(std::size_t bodies) { wrenches_.resize(bodies); }
   [[nodiscard]] std::int64_t evaluations() const { return evaluations_; }
+  void persist(Archive& archive) { archive(evaluations_); }
 
   void evaluate(const Island& island, Instant t, std::span<const BodyState> states,
                 std::span<Acceleration> out) {

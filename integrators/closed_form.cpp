@@ -1,5 +1,6 @@
 #include "integrators/closed_form.hpp"
 
+#include "core/archive.hpp"
 #include "integrators/accelerations.hpp"
 #include "integrators/constant_force.hpp"
 #include "integrators/dense_output.hpp"
@@ -24,6 +25,13 @@ struct Leg {
 #ifdef KAIROS_WITH_GSL
   FreeTop top;
 #endif
+
+  void persist(Archive& archive) {
+    archive(before, acceleration, rotates, tumbles, bounding_radius);
+#ifdef KAIROS_WITH_GSL
+    archive(top);
+#endif
+  }
 };
 
 /// Steady: what the gyroscopic term changes is roundoff of the rate itself (about a principal
@@ -103,6 +111,11 @@ class ClosedForm final : public Stepper {
   bool replay(const Island& island, double s, std::span<const BodyState> before,
               std::span<ReplayedStep> after) const override {
     return replay_parabola(island, s, before, after);
+  }
+
+  bool persist(Archive& archive) override {
+    archive(legs_, epoch_, start_, h_, longest_, fresh_, evaluations_);
+    return true;
   }
 
  private:

@@ -12,8 +12,16 @@ class CompositeStepper : public OdeStepper {
  public:
   void start(const Island& island, Instant t, std::span<const BodyState> states) override;
   StepResult step(const Island& island, Instant t, double h, std::span<BodyState> states) final;
+  /// No, unless a solver says otherwise: most keep a memory of their own.
+  bool persist(Archive& /*archive*/) override { return false; }
 
  protected:
+  /// For solvers that have no memory beyond one step.
+  bool persist_memoryless(Archive& archive) {
+    archive(dense_control_);
+    return OdeStepper::persist(archive);
+  }
+
   struct Substep {
     double advanced = 0.0;  ///< s; 0: failed
     double error = 0.0;     ///< in units of the tolerance

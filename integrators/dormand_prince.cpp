@@ -90,6 +90,11 @@ class DormandPrince final : public OdeStepper {
     }
   }
 
+  bool persist(Archive& archive) override {
+    archive(control_, k_, h_);
+    return OdeStepper::persist(archive);
+  }
+
  private:
   HermiteMotion::Node attempt(const HermiteMotion::Node& first, double h) {
     for (std::size_t stage = 1; stage + 1 < stages; ++stage) {

@@ -106,12 +106,19 @@ class Euler final : public Stepper {
     return true;
   }
 
+  bool persist(Archive& archive) override {
+    archive(accelerations_, memory_, last_, start_, h_);
+    return true;
+  }
+
  private:
   struct Record {
     BodyState before;
     Twist after_twist;
     Acceleration used;
     bool rotates = false;
+
+    void persist(Archive& archive) { archive(before, after_twist, used, rotates); }
   };
 
   static void advance_translation(const Vector3& a, double h, BodyState& state) {

@@ -49,6 +49,8 @@ class HermiteMotion {
   void motions(const IslandOde& ode, bool constant_acceleration,
                std::span<const Quaternion> orientations, std::span<Motion> out) const;
 
+  void persist(Archive& archive) { archive(start_, size_, used_, times_, values_); }
+
  private:
   void translation(std::size_t offset, Motion& motion) const;
   void rotation(std::size_t offset, Motion& motion) const;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/archive.hpp"
 #include "core/force.hpp"
 
 #include <cstdint>
@@ -35,6 +36,7 @@ class IslandOde {
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] std::span<const Slot> slots() const { return slots_; }
   [[nodiscard]] std::int64_t evaluations() const { return evaluations_; }
+  void persist(Archive& archive) { archive(evaluations_); }
 
   void pack(std::span<const BodyState> states, double* y) const;
   /// Normalises quaternions; bodies that do not rotate keep orientation and angular velocity.

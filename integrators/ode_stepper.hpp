@@ -22,6 +22,10 @@ class OdeStepper : public Stepper {
     return !info().variable_order && replay_parabola(island, s, before, after);
   }
   [[nodiscard]] std::int64_t evaluations() const override { return ode_.evaluations(); }
+  bool persist(Archive& archive) override {
+    archive(ode_, dense_, orientations_, end_rate_, has_end_rate_, constant_acceleration_);
+    return true;
+  }
 
  protected:
   /// `nodes`: of the dense output, ends included.

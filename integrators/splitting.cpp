@@ -76,6 +76,12 @@ class Splitting final : public Stepper {
     return replay_parabola(island, s, before, after);
   }
 
+  bool persist(Archive& archive) override {
+    archive(ode_, dense_, wrenches_, orientations_, momenta_, primed_, constant_acceleration_,
+            evaluations_);
+    return true;
+  }
+
  private:
   // Momenta are memory: turned into velocities and back at each step they would wear out.
   void prime(const Island& island, Instant t, std::span<const BodyState> states) {

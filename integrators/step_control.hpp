@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/archive.hpp"
 #include "core/stepper.hpp"
 
 #include <algorithm>
@@ -25,6 +26,7 @@ class StepControl {
   void forget() { proposed_ = 0.0; }
   [[nodiscard]] bool has_proposal() const { return !active() || proposed_ > 0.0; }
   void propose(double h) { proposed_ = h; }
+  void persist(Archive& archive) { archive(proposed_, asked_, shrunk_); }
 
   /// The error of one component in units of its tolerance. No tolerance is below roundoff.
   [[nodiscard]] double scaled(double error, double y0, double y1) const {

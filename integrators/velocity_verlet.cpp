@@ -76,11 +76,18 @@ class VelocityVerlet final : public Stepper {
     return replay_parabola(island, s, before, after);
   }
 
+  bool persist(Archive& archive) override {
+    archive(accelerations_, next_, last_, start_, h_, primed_);
+    return true;
+  }
+
  private:
   struct Record {
     BodyState before, after;
     Acceleration first, second;  ///< at the start and at the end of the step
     bool rotates = false;
+
+    void persist(Archive& archive) { archive(before, after, first, second, rotates); }
   };
 
   // Moves to the end of the step, with the velocities that the second evaluation may need.

@@ -29,12 +29,11 @@ class EventDriven final : public Scheme {
   RunResult run(const Model& model, const Method& method, const SchemeOptions& options,
                 Recorder& recorder) const override {
     EventWorld world(model, method, options, recorder);
-    world.begin();
-    do {
+    for (bool more = world.begin(); more; more = world.draw()) {
       while (world.due() && !world.stopped()) {
         world.take();
       }
-    } while (world.draw());
+    }
     return std::move(world).result();
   }
 };

@@ -27,6 +27,9 @@ void EventWorld::take() {
   const QueuedEvent event = queue_.pop();
   const BodyIndex a = by_rank_[event.a];
   const BodyIndex b = by_rank_[event.b];
+  if (event.due == Due::epoch_end) {
+    return next_epoch(event.time);
+  }
   if (event.due == Due::contact_begins) {
     return begin_contact(a, event.time);
   }
@@ -39,6 +42,7 @@ void EventWorld::take() {
       return segment_end(a, event.time);
     case Due::support_ends:
       return leave_support(a, event.time);
+    case Due::epoch_end:
     case Due::contact_begins:
       return;
     case Due::field_entered:
@@ -226,7 +230,7 @@ void EventWorld::settle(BodyIndex ball, const Support& support, double rebound, 
   launch(ball, t);
   const double still = e < 1.0 ? 2.0 * std::max(rebound, 0.0) / (pressing * (1.0 - e)) : 0.0;
   actor.contact_begins = t + still;
-  if (actor.contact_begins < end_) {
+  if (actor.contact_begins < Instant::never()) {
     push(actor.contact_begins, Due::contact_begins, ball, support.surface);
   }
   predict(ball, t);

@@ -39,17 +39,40 @@ void EventWorld::predict(BodyIndex i, Instant t, BodyIndex except) {
   }
 }
 
+/// All pairs, from t on.
+void EventWorld::predict_all(Instant t) {
+  if (!broad_phase_) {
+    for (const auto& [a, b] : model_.pairs()) {
+      predict_pair(a, b, t);
+    }
+    return;
+  }
+  for (const BodyIndex i : by_rank_) {
+    open_window(i, t);
+  }
+  for (const BodyIndex i : by_rank_) {
+    neighbours_.clear();
+    broad_phase_->candidates(i, neighbours_);
+    for (const BodyIndex j : neighbours_) {
+      if (i < j && model_.interacts(i, j)) {
+        predict_pair(i, j, t);
+      }
+    }
+  }
+}
+
 /// Tells the broad phase where i goes during its next window.
 void EventWorld::open_window(BodyIndex i, Instant t) {
   Actor& actor = actors_[i];
   if (model_.is_free(i)) {
-    actor.horizon = std::min({actor.motion.end(), end_, t + window_length(i, t)});
-    if (actor.horizon < actor.motion.end() && actor.horizon < end_) {
+    actor.horizon = std::min({actor.motion.end(), epoch_end_, t + window_length(i, t)});
+    if (actor.horizon < actor.motion.end() && actor.horizon < epoch_end_) {
       push(actor.horizon, Due::horizon, i, i);
     }
   }
-  const Instant until = std::max(std::min(actor.horizon, end_), t);
-  broad_phase_->update(i, swept_bounds_({model_.shape(i), actor.motion}, {t, until - t}));
+  const Instant until = std::max(std::min(actor.horizon, epoch_end_), t);
+  actor.swept = swept_bounds_({model_.shape(i), actor.motion}, {t, until - t});
+  broad_phase_->update(i, actor.swept);
 }
 
 /// How long it takes i to go as far as its reach, s.
@@ -74,7 +97,8 @@ void EventWorld::predict_pair(BodyIndex i, BodyIndex j, Instant t) {
   if (supported_by(a, b) || supported_by(b, a)) {
     return;
   }
-  const double duration = std::min({actors_[a].motion.end(), actors_[b].motion.end(), end_}) - t;
+  const double duration =
+      std::min({actors_[a].motion.end(), actors_[b].motion.end(), epoch_end_}) - t;
   if (!(duration > 0.0)) {
     return;
   }

@@ -10,8 +10,11 @@
 namespace kairos {
 inline namespace core {
 
+class Archive;
+
 /// What is due, in the order in which simultaneous events are taken.
 enum class Due : std::uint8_t {
+  epoch_end,       ///< what was predicted ends here, for all
   segment_end,     ///< the motion of `a` ends there; the next one is due
   support_ends,    ///< `a` leaves the surface `b`
   contact_begins,  ///< the bounces of `a` on `b` have died down: told, nothing changes
@@ -34,6 +37,8 @@ struct QueuedEvent {
   double patience = 0.0;  ///< impact: t_hi - t_lo, s
   bool decided = true;    ///< impact: contact by t_hi is proven
 
+  void persist(Archive& archive);
+
   [[nodiscard]] auto key() const { return std::tuple(time.seconds, time.correction, due, a, b); }
 };
 
@@ -47,6 +52,7 @@ class EventQueue {
     heap_.push_back(event);
     std::push_heap(heap_.begin(), heap_.end(), later);
   }
+  void persist(Archive& archive);
   QueuedEvent pop() {
     std::pop_heap(heap_.begin(), heap_.end(), later);
     const QueuedEvent event = heap_.back();

@@ -26,6 +26,8 @@ EventWorld::EventWorld(const Model& model, const Method& method, const SchemeOpt
       drawn_(now_),
       field_forces_(model.size(), Vector3::Zero()),
       end_(Instant{} + options.duration),
+      // Not shorter than some frames, so that epochs cost nothing.
+      epoch_(std::max(model.scene().duration, 64.0 * mean_frame_duration(options.frames))),
       account_(model, ledger_) {
   for (BodyIndex i = 0; i < model.size(); ++i) {
     by_rank_[i] = i;
@@ -54,12 +56,18 @@ EventWorld::EventWorld(const Model& model, const Method& method, const SchemeOpt
   account_.open(time_, now_);
 }
 
-void EventWorld::begin() {
+bool EventWorld::begin() {
+  if (!options_.resume.empty()) {
+    resume();
+    return open_frame(time_);
+  }
+  epoch_end_ = Instant{} + epoch_;
+  push(epoch_end_, Due::epoch_end, by_rank_.front(), by_rank_.front());
   for (const BodyIndex i : by_rank_) {
     switch (model_.mobility(i)) {
       case Mobility::fixed:
         actors_[i].motion = Motion::at_rest(time_, now_[i].pose);
-        actors_[i].horizon = end_;
+        actors_[i].horizon = Instant::never();
         break;
       case Mobility::driven:
         drive(i, time_);
@@ -79,24 +87,24 @@ void EventWorld::begin() {
       next_segment(flow, time_);
     }
   }
-  if (!broad_phase_) {
-    for (const auto& [a, b] : model_.pairs()) {
-      predict_pair(a, b, time_);
-    }
-    return;
-  }
+  predict_all(time_);
+  return true;
+}
+
+/// Predictions were made up to here: makes those of the next epoch.
+void EventWorld::next_epoch(Instant t) {
+  epoch_end_ = t + epoch_;
+  push(epoch_end_, Due::epoch_end, by_rank_.front(), by_rank_.front());
   for (const BodyIndex i : by_rank_) {
-    open_window(i, time_);
-  }
-  for (const BodyIndex i : by_rank_) {
-    neighbours_.clear();
-    broad_phase_->candidates(i, neighbours_);
-    for (const BodyIndex j : neighbours_) {
-      if (i < j && model_.interacts(i, j)) {
-        predict_pair(i, j, time_);
-      }
+    // How long a ball is supported was looked at for one epoch only; where the surface moves, its
+    // next motion tells.
+    if (actors_[i].support && model_.mobility(actors_[i].support->surface) != Mobility::driven) {
+      book(flow_of(i), t);
+      now_[i] = state_at(i, t);
+      launch(i, t);
     }
   }
+  predict_all(t);
 }
 
 // --- Motions -----------------------------------------------------------------------------------
@@ -166,13 +174,9 @@ void EventWorld::next_segment(Flow& flow, Instant t) {
     flow.launched = flow.states;
     flow.roundoff = 0.0;
   }
-  const double left = end_ - t;
   const double longest = options_.step > 0.0 ? options_.step : mean_frame_duration(options_.frames);
-  if (!(left > 0.0)) {
-    return;  // the run ends here
-  }
   // A closed form has no end of its own.
-  const double h = flow.exact ? std::numeric_limits<double>::infinity() : std::min(left, longest);
+  const double h = flow.exact ? std::numeric_limits<double>::infinity() : std::min(epoch_, longest);
   ++cost_.steps;
   const StepResult step = flow.stepper->step(flow.island, t, h, flow.states);
   if (!step.ok || !(step.advanced > 0.0)) {
@@ -185,7 +189,7 @@ void EventWorld::next_segment(Flow& flow, Instant t) {
   }
   hold(flow, t);
   const BodyIndex first = flow.island.bodies.front();
-  if (step.advanced < left) {
+  if (std::isfinite(step.advanced)) {
     push(t + step.advanced, Due::segment_end, first, first);
   }
 }
@@ -208,7 +212,7 @@ void EventWorld::hold(Flow& flow, Instant t) {
   }
   const BodyIndex surface = actor.support->surface;
   const Motion under = actors_[surface].motion.shifted(t - actors_[surface].motion.start);
-  const double left = std::min({end_ - t, under.duration, actor.motion.duration});
+  const double left = std::min({epoch_end_ - t, under.duration, actor.motion.duration});
   double until =
       face_exit_time(model_.shape(surface), under, actor.motion, actor.support->normal, left);
   if (model_.mobility(surface) == Mobility::driven) {
@@ -231,21 +235,15 @@ void EventWorld::hold(Flow& flow, Instant t) {
                    },
                    std::min(until, left)));
   }
-  if (t + until < end_) {
+  if (t + until < epoch_end_) {
     push(t + until, Due::support_ends, i, surface);
   }
 }
 
 void EventWorld::drive(BodyIndex i, Instant t) {
-  const double left = end_ - t;
-  if (!(left > 0.0)) {
-    return;
-  }
-  set_motion(i, model_.body(i).drive->motion(t, left));
+  set_motion(i, model_.body(i).drive->motion(t, epoch_));
   now_[i] = state_at(i, t);
-  if (actors_[i].motion.duration < left) {
-    push(actors_[i].motion.end(), Due::segment_end, i, i);
-  }
+  push(actors_[i].motion.end(), Due::segment_end, i, i);
 }
 
 void EventWorld::segment_end(BodyIndex i, Instant t) {
@@ -339,12 +337,22 @@ bool EventWorld::draw() {
   recorder_.stage(Stage::draw, 1.0);
   recorder_.frame({frame_index_, t, drawn_, ledger_});
   ++cost_.frames;
+  return open_frame(t);
+}
+
+/// The frame that follows the one drawn at t; false where the run ends.
+bool EventWorld::open_frame(Instant t) {
   const double left = end_ - t;
   const double frame = frame_duration(options_.frames, frame_index_);
+  const bool over = left <= 1e-9 * frame;  // a remainder that only rounding left over
+  if (whole_ && !stopped()) {
+    offer_checkpoint(t, over || frame >= left);
+  }
   ++frame_index_;
-  if (left <= 1e-9 * frame) {  // a remainder that only rounding left over
+  if (over) {
     return false;
   }
+  whole_ = whole_ && frame < left;
   next_frame_ = frame < left ? t + frame : end_;
   return true;
 }

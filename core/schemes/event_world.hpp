@@ -25,8 +25,9 @@ class EventWorld {
   EventWorld(const Model& model, const Method& method, const SchemeOptions& options,
              Recorder& recorder);
 
-  /// Launches every body and predicts every pair.
-  void begin();
+  /// Launches every body and predicts every pair, or goes on from a checkpoint; false if that was
+  /// made where the run ends.
+  [[nodiscard]] bool begin();
   [[nodiscard]] bool stopped() const { return !reason_.empty(); }
   /// Whether something is due before the next frame is drawn.
   [[nodiscard]] bool due() const { return !queue_.empty() && queue_.top().time < next_frame_; }
@@ -50,6 +51,9 @@ class EventWorld {
     int creeping = 0;                           ///< impacts in a row between which it hardly moved
     Instant last_impact = Instant::never();
     double last_speed = 0.0;  ///< after that impact, m/s
+    Aabb swept{};             ///< what the broad phase was told
+
+    void persist(Archive& archive);
   };
   struct Flow {
     Island island;
@@ -62,6 +66,8 @@ class EventWorld {
     std::vector<ReplayedStep> replayed{};
     double roundoff = 0.0;  ///< of the segment so far, J
     Instant booked{};       ///< how far the ledger has followed it
+
+    void persist(Archive& archive);
   };
 
   // Motions
@@ -79,6 +85,8 @@ class EventWorld {
                                      const Vector3& constant) const;
 
   // Predictions
+  void predict_all(Instant t);
+  void next_epoch(Instant t);
   void predict(BodyIndex i, Instant t) { predict(i, t, i); }
   void predict(BodyIndex i, Instant t, BodyIndex except);
   void open_window(BodyIndex i, Instant t);
@@ -109,6 +117,12 @@ class EventWorld {
   void note(EventKind kind, BodyIndex a, BodyIndex b, Instant t);
   void stop(Instant t, std::string reason);
 
+  // Frames
+  bool open_frame(Instant t);
+  void offer_checkpoint(Instant t, bool last);
+  void persist(Archive& archive);
+  void resume();
+
   // Ledger
   void book(Flow& flow, Instant t);
   [[nodiscard]] double new_roundoff(Flow& flow, Instant t);
@@ -138,8 +152,13 @@ class EventWorld {
 
   Instant time_;  ///< of the last event or frame
   Instant end_;
+  /// Nothing is predicted beyond the end of the epoch, which lasts as long as the scene says that
+  /// it is of interest: predictions, hence bits, do not depend on when the run is to end.
+  Instant epoch_end_;
+  double epoch_ = 0.0;  ///< s
   Instant next_frame_;
   std::int64_t frame_index_ = 0;
+  bool whole_ = true;  ///< no frame was cut short by the end of the run
   std::string reason_;
   EnergyLedger ledger_;
   EnergyAccount account_;

@@ -1,5 +1,7 @@
 #include "core/schemes/frame_world.hpp"
 
+#include "core/archive.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -43,19 +45,38 @@ FrameWorld::FrameWorld(const Model& model, const Method& method, const SchemeOpt
   }
   recorder_.begin(model_);
   account_.open(now_, bodies_);
+  if (!options_.resume.empty()) {
+    Archive archive(options_.resume);
+    persist(archive);
+    resumed_ = true;
+  }
 }
 
 bool FrameWorld::draw() {
-  check_finite();
-  account_.balance(now_, bodies_);
-  trace(Stage::draw, 1.0);
-  recorder_.frame({frame_index_, now_, bodies_, ledger_});
-  ++cost_.frames;
+  if (!resumed_) {
+    check_finite();
+    account_.balance(now_, bodies_);
+    trace(Stage::draw, 1.0);
+    recorder_.frame({frame_index_, now_, bodies_, ledger_});
+    ++cost_.frames;
+  }
+  const bool more = open_frame();
+  resumed_ = false;
+  return more;
+}
+
+/// The frame that follows what was drawn; false where the run ends.
+bool FrameWorld::open_frame() {
   const double left = options_.duration - now_.seconds - now_.correction;
   frame_ = core::frame_duration(options_.frames, frame_index_);
-  if (!reason_.empty() || left <= 1e-9 * frame_) {  // a remainder that only rounding left over
+  const bool over = left <= 1e-9 * frame_;  // a remainder that only rounding left over
+  if (whole_ && !resumed_ && reason_.empty()) {
+    offer_checkpoint(over || frame_ >= left);
+  }
+  if (!reason_.empty() || over) {
     return false;
   }
+  whole_ = whole_ && frame_ < left;
   frame_ = std::min(frame_, left);
   ++frame_index_;
   return true;

@@ -77,11 +77,15 @@ class FrameWorld {
     std::vector<BodyState> reached{};  ///< scratch: the end of a leg
     std::vector<ReplayedStep> replayed{};
     double booked_until = 0.0;  ///< of the proposal, s
+
+    void persist(Archive& archive);
   };
   /// Something falls into a field or not: seen in the latest detection.
   struct FieldContact {
-    BodyIndex field, body;
-    bool seen;
+    BodyIndex field = 0, body = 0;
+    bool seen = false;
+
+    void persist(Archive& archive);
   };
 
   void gather(Mover& mover) const;
@@ -109,6 +113,9 @@ class FrameWorld {
   void meet_field(BodyIndex a, BodyIndex b);
   void record_fields_left();
   void check_finite();
+  bool open_frame();
+  void offer_checkpoint(bool last);
+  void persist(Archive& archive);
 
   const Model& model_;
   const ContactDetector& detector_;
@@ -134,7 +141,9 @@ class FrameWorld {
   Instant now_;
   std::int64_t frame_index_ = 0;
   double frame_ = 0.0;
-  std::string reason_;  ///< of a stop
+  bool whole_ = true;     ///< no frame was cut short by the end of the run
+  bool resumed_ = false;  ///< this frame was drawn before the run was interrupted
+  std::string reason_;    ///< of a stop
   EnergyLedger ledger_;
   EnergyAccount account_;
   Cost cost_;

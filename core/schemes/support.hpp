@@ -10,10 +10,14 @@
 namespace kairos {
 inline namespace core {
 
+class Archive;
+
 /// A ball that rests or slides on one face of a body that it cannot move.
 struct Support {
   BodyIndex surface = 0;
   Vector3 normal = Vector3::Zero();  ///< of the face, unit, from the surface to the ball, world
+
+  void persist(Archive& archive);
 };
 
 /// The face on which `ball` could be supported where it touches `surface` with this normal (from
@@ -54,6 +58,7 @@ class SupportForce final : public Force {
   [[nodiscard]] bool conservative() const override { return true; }
   [[nodiscard]] bool involves_rotation() const override { return false; }
   [[nodiscard]] std::string description() const override { return "support"; }
+  [[nodiscard]] const Vector3& normal() const { return normal_; }
 
  private:
   Vector3 normal_;

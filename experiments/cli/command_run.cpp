@@ -1,4 +1,7 @@
+#include "core/archive.hpp"
 #include "core/error.hpp"
+#include "experiments/checkpoint/file_keeper.hpp"
+#include "experiments/checkpoint/run_identity.hpp"
 #include "experiments/cli/commands.hpp"
 #include "experiments/cli/run_options.hpp"
 #include "experiments/metrics/run_metrics.hpp"
@@ -14,6 +17,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -31,6 +35,7 @@ class ProgressRecorder : public Recorder {
       bar_.advance();
     }
   }
+  bool persist(Archive& /*archive*/) override { return true; }
 
  private:
   std::size_t frames_;
@@ -48,9 +53,37 @@ struct RunCommand {
   SceneOptions scene;
   RunOptions method;
   std::optional<std::string> out;
+  std::string save;
+  double save_interval = 10.0;  ///< s
+  std::string resume;
 
   void run() const;
+  [[nodiscard]] CheckpointFile checkpoint(const Model& model, const RunIdentity& identity) const;
+  [[nodiscard]] std::string scratch_folder() const;
+  [[nodiscard]] RunResult go(const Model& model, const RunChoice& choice, Recorder& recorder,
+                             FileKeeper& keeper, std::string_view begun) const;
 };
+
+/// What --resume names, if it is of this run.
+CheckpointFile RunCommand::checkpoint(const Model& model, const RunIdentity& identity) const {
+  if (resume.empty()) {
+    return {};
+  }
+  CheckpointFile file = read_checkpoint(resume);
+  require_same_run(resume, file.identity, identity);
+  const double duration = method.choice().duration.value_or(model.scene().duration);
+  if (file.time > duration) {
+    throw InputError(resume, 0, "--duration",
+                     fmt::format("is {} s, but the run was saved at {} s", duration, file.time));
+  }
+  return file;
+}
+
+/// A checkpoint holds all files of its run, wanted or not: where they grow until it is written.
+std::string RunCommand::scratch_folder() const {
+  const std::filesystem::path folder = std::filesystem::path(save).parent_path();
+  return folder.empty() ? "." : folder.string();
+}
 
 void RunCommand::run() const {
   const RunChoice choice = method.choice();
@@ -58,26 +91,32 @@ void RunCommand::run() const {
   if (const std::string reason = why_refused(model, choice); !reason.empty()) {
     throw InputError(model.scene().path, 0, "", reason);  // before a folder is made for it
   }
+  const RunIdentity identity = run_identity(model, scene.overrides(), choice);
+  const CheckpointFile begun = checkpoint(model, identity);
 
   MetricsRecorder metrics;
   std::vector<Recorder*> listeners{&metrics};
   std::optional<OutputFolder> folder;
   std::optional<RunFiles> files;
-  if (out) {
-    folder.emplace(*out);
+  NoRunFiles no_files;
+  if (out || !save.empty()) {
+    folder.emplace(out.value_or(scratch_folder()));
     files.emplace(*folder);
     listeners.push_back(&*files);
+  } else if (!resume.empty()) {
+    listeners.push_back(&no_files);
   }
   std::optional<ProgressRecorder> progress;
   if (::isatty(STDERR_FILENO) == 1) {
     listeners.push_back(&progress.emplace(expected_frames(model.scene(), choice)));
   }
   Broadcast recorder(listeners);
-  const RunResult result = simulate(model, choice, recorder);
+  FileKeeper keeper(save, identity, save_interval);
+  const RunResult result = go(model, choice, recorder, keeper, begun.world);
   progress.reset();
 
   const FinishedRun finished{model, choice, result, metrics.metrics()};
-  if (folder) {
+  if (out) {
     folder->file("summary.json").write(summary_json(finished));
     folder->publish();
   }
@@ -85,6 +124,15 @@ void RunCommand::run() const {
   if (result.status == RunStatus::stopped) {
     throw RunError(fmt::format("{}: stopped at t = {} s: {}", model.scene().path,
                                result.end.seconds, result.reason));
+  }
+}
+
+RunResult RunCommand::go(const Model& model, const RunChoice& choice, Recorder& recorder,
+                         FileKeeper& keeper, std::string_view begun) const {
+  try {
+    return simulate(model, choice, recorder, {save.empty() ? nullptr : &keeper, begun});
+  } catch (const ArchiveError& error) {
+    throw InputError(resume, 0, "", fmt::format("is not of this run: it {}", error.what()));
   }
 }
 
@@ -98,6 +146,17 @@ void add_run_command(CLI::App& app) {
   run->add_option("--out", command->out,
                   "folder for trajectory.csv, events.csv, energy.csv and summary.json")
       ->type_name("DIR");
+  run->add_option("--save", command->save,
+                  "keep a checkpoint of the run in this file: now and then, and at the end")
+      ->type_name("FILE");
+  run->add_option("--save-interval", command->save_interval,
+                  "seconds of real time between checkpoints; 0: after every frame")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  run->add_option("--resume", command->resume,
+                  "go on from a checkpoint of the same scene and method, to the end or beyond; "
+                  "gives the bytes of a run that was never interrupted")
+      ->type_name("FILE");
   run->callback([command] { command->run(); });
 }
 

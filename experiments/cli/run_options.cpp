@@ -83,12 +83,14 @@ void SceneOptions::add_to(CLI::App& command) {
       ->trigger_on_parse(false);
 }
 
-Scene SceneOptions::scene() const {
+Scene SceneOptions::scene() const { return read_scene(find_scene(scene_), overrides()); }
+
+std::vector<Override> SceneOptions::overrides() const {
   std::vector<Override> overrides;
   for (const std::string& setting : settings_) {
     overrides.push_back(parse_setting(setting));
   }
-  return read_scene(find_scene(scene_), overrides);
+  return overrides;
 }
 
 void RunOptions::add_to(CLI::App& command) {

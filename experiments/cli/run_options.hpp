@@ -19,6 +19,8 @@ class SceneOptions {
   void add_to(CLI::App& command);
   /// Reads the scene. Throws `InputError`.
   [[nodiscard]] Scene scene() const;
+  /// What --set replaces. Throws `InputError`.
+  [[nodiscard]] std::vector<Override> overrides() const;
 
  private:
   std::string scene_;

@@ -1,5 +1,7 @@
 #include "experiments/metrics/run_metrics.hpp"
 
+#include "core/archive.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -13,6 +15,19 @@ double energy_error(const EnergyLedger& ledger) {
     error.add(ledger.line(line));
   }
   return error.value();
+}
+
+void RunMetrics::persist(Archive& archive) {
+  bool any = deepest.has_value();
+  BodyPair pair = deepest.value_or(BodyPair{});
+  archive(max_depth, any, pair.first, pair.second, time_of_max_depth, time_overlapping,
+          frames_overlapping, frames, final_energy_error, max_energy_error, energy_scale);
+  deepest = any ? std::optional(pair) : std::nullopt;
+}
+
+bool MetricsRecorder::persist(Archive& archive) {
+  archive(metrics_, overlapping_, shown_since_);
+  return true;
 }
 
 void MetricsRecorder::begin(const Model& model) {

@@ -21,6 +21,7 @@ struct RunMetrics {
   /// energy of a drawn frame.
   double energy_scale = 0.0;
 
+  void persist(Archive& archive);
   /// `joules` relative to the scale; 0 where there is no energy at all.
   [[nodiscard]] double relative(double joules) const {
     return energy_scale > 0.0 ? joules / energy_scale : 0.0;
@@ -37,6 +38,7 @@ class MetricsRecorder : public Recorder {
  public:
   void begin(const Model& model) override;
   void frame(const Frame& frame) override;
+  bool persist(Archive& archive) override;
 
   [[nodiscard]] const RunMetrics& metrics() const { return metrics_; }
 

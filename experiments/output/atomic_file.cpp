@@ -45,10 +45,10 @@ std::string temporary_name(const std::string& path) {
 
 AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
   // A file without a name vanishes with its process, whatever kills it.
-  descriptor_ = ::open(folder(path_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  descriptor_ = ::open(folder(path_).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
   if (descriptor_ < 0) {  // not every file system has them
     temporary_ = temporary_name(path_);
-    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   }
   if (descriptor_ < 0) {
     const std::string why = reason();
@@ -82,6 +82,29 @@ void AtomicFile::flush() {
     rest.remove_prefix(written < 0 ? 0 : static_cast<std::size_t>(written));
   }
   buffer_.clear();
+}
+
+std::string AtomicFile::contents() {
+  flush();
+  const ::off_t size = ::lseek(descriptor_, 0, SEEK_END);
+  std::string text(static_cast<std::size_t>(size < 0 ? 0 : size), '\0');
+  for (std::size_t done = 0; done < text.size();) {
+    const ::ssize_t got =
+        ::pread(descriptor_, text.data() + done, text.size() - done, static_cast<::off_t>(done));
+    if (got == 0 || (got < 0 && errno != EINTR)) {
+      fail(path_);
+    }
+    done += got < 0 ? 0 : static_cast<std::size_t>(got);
+  }
+  return text;
+}
+
+void AtomicFile::restore(std::string_view text) {
+  buffer_.clear();
+  if (::ftruncate(descriptor_, 0) != 0 || ::lseek(descriptor_, 0, SEEK_SET) != 0) {
+    fail(path_);
+  }
+  write(text);
 }
 
 void AtomicFile::finish() {

@@ -19,6 +19,10 @@ class AtomicFile {
 
   /// Appends. Throws `RunError` where the disk does not take it.
   void write(std::string_view text);
+  /// What was written so far. Throws `RunError`.
+  [[nodiscard]] std::string contents();
+  /// Makes this what was written so far. Throws `RunError`.
+  void restore(std::string_view text);
   /// Writes what is buffered and waits until the disk has it. Throws `RunError`.
   void finish();
   /// Gives the file its name, replacing one that has it. Call after `finish`. Throws `RunError`.

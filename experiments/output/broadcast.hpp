@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/archive.hpp"
 #include "core/recorder.hpp"
 
 #include <algorithm>
@@ -41,6 +42,10 @@ class Broadcast : public Recorder {
     for (Recorder* listener : listeners_) {
       listener->stage(stage, fraction);
     }
+  }
+  bool persist(Archive& archive) override {
+    return std::all_of(listeners_.begin(), listeners_.end(),
+                       [&](Recorder* listener) { return listener->persist(archive); });
   }
 
  private:

@@ -1,5 +1,7 @@
 #include "experiments/output/run_files.hpp"
 
+#include "core/archive.hpp"
+
 #include <string>
 
 namespace kairos::experiments {
@@ -62,6 +64,25 @@ void RunFiles::write_energy(const Frame& frame) {
   }
   row_.number(ledger.unexplained()).number(ledger.flow());
   energy_.write(row_.finish());
+}
+
+bool RunFiles::persist(Archive& archive) {
+  for (AtomicFile* file : {&trajectory_, &events_, &energy_}) {
+    std::string text = archive.reading() ? std::string() : file->contents();
+    archive(text);
+    if (archive.reading()) {
+      file->restore(text);
+    }
+  }
+  return true;
+}
+
+bool NoRunFiles::persist(Archive& archive) {
+  for (int file = 0; file < 3; ++file) {
+    std::string text;
+    archive(text);
+  }
+  return true;
 }
 
 void RunFiles::event(const Event& event) {

@@ -18,6 +18,7 @@ class RunFiles : public Recorder {
   void begin(const Model& model) override;
   void frame(const Frame& frame) override;
   void event(const Event& event) override;
+  bool persist(Archive& archive) override;
 
  private:
   void write_energy(const Frame& frame);
@@ -27,6 +28,12 @@ class RunFiles : public Recorder {
   AtomicFile& energy_;
   CsvRow row_;
   const Model* model_ = nullptr;
+};
+
+/// Where nobody wants the files of a run that is resumed.
+class NoRunFiles : public Recorder {
+ public:
+  bool persist(Archive& archive) override;
 };
 
 }  // namespace kairos::experiments

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/archive.hpp"
 #include "core/motion.hpp"
 
 namespace kairos::integrators {
@@ -33,6 +34,11 @@ class FreeTop {
   [[nodiscard]] double fit_error(double h) const;
   /// Writes quaternion and angular velocity over [time, time + h] into a motion.
   void fit(double time, double h, Motion& motion) const;
+
+  void persist(Archive& archive) {
+    archive(moments_, amplitudes_, body_to_sorted_, momentum_frame_, L_, frequency_, modulus_,
+            quarter_, characteristic_, quarter_integral_, phase_, resolved_, fastest_, coupling_);
+  }
 
  private:
   [[nodiscard]] Vector3 rate_at(double u) const;

@@ -102,6 +102,11 @@ class GslOneStep final : public GslStepper {
     control_.forget();
   }
 
+  bool persist(Archive& archive) override {
+    archive(control_);
+    return persist_memoryless(archive);
+  }
+
  private:
   Substep substep(double s, double h, const double* y, const double* rate, double* y1) override {
     system_.offset = s;

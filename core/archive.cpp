@@ -1,0 +1,53 @@
+#include "core/archive.hpp"
+
+#include <cstring>
+
+namespace kairos {
+inline namespace core {
+
+void Archive::raw(void* data, std::size_t size) {
+  if (!reading_) {
+    out_.append(static_cast<const char*>(data), size);
+    return;
+  }
+  if (size > in_.size()) {
+    throw ArchiveError("ends too early");
+  }
+  std::memcpy(data, in_.data(), size);
+  in_.remove_prefix(size);
+}
+
+void Archive::count(std::size_t& n) {
+  auto portable = static_cast<std::uint64_t>(n);
+  raw(&portable, sizeof portable);
+  if (reading_ && portable > in_.size()) {
+    throw ArchiveError("ends too early");
+  }
+  n = static_cast<std::size_t>(portable);
+}
+
+void persist(Archive& archive, Quaternion& value) {
+  for (int k = 0; k < 4; ++k) {
+    archive(value.coeffs()[k]);
+  }
+}
+
+void persist(Archive& archive, std::string& value) {
+  std::size_t n = value.size();
+  archive.count(n);
+  value.resize(n);
+  archive.raw(value.data(), n);
+}
+
+void persist(Archive& archive, Instant& value) { archive(value.seconds, value.correction); }
+void persist(Archive& archive, Pose& value) { archive(value.position, value.orientation); }
+void persist(Archive& archive, Twist& value) { archive(value.linear, value.angular); }
+void persist(Archive& archive, BodyState& value) { archive(value.pose, value.twist); }
+
+void persist(Archive& archive, Motion& value) {
+  archive(value.start, value.duration, value.position, value.velocity, value.rotation,
+          value.quaternion, value.angular_velocity, value.error_radius);
+}
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,125 @@
+#pragma once
+
+#include "core/motion.hpp"
+#include "core/state.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+
+/// An archive ends before what is read from it, or holds what cannot be.
+class ArchiveError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Values in a fixed order, written and read by the same code, so that the two cannot differ:
+/// `archive(a, b, c)` writes them, or reads them if the archive was made from bytes.
+///
+/// Bits, not digits: what comes back is what went in, on a machine of the same kind. What a class
+/// archives is in its member `persist(Archive&)`.
+class Archive {
+ public:
+  /// To be written.
+  Archive() = default;
+  /// To be read; the bytes must outlive it.
+  explicit Archive(std::string_view bytes) : in_(bytes), reading_(true) {}
+
+  [[nodiscard]] bool reading() const { return reading_; }
+  /// What was written.
+  [[nodiscard]] const std::string& bytes() const { return out_; }
+  /// Bytes not read yet.
+  [[nodiscard]] std::size_t left() const { return in_.size(); }
+
+  template <typename... T>
+  void operator()(T&... values) {
+    (persist(*this, values), ...);
+  }
+
+  /// Throws `ArchiveError` where fewer bytes are left.
+  void raw(void* data, std::size_t size);
+  /// Number of elements that follow, each of at least one byte.
+  void count(std::size_t& n);
+
+ private:
+  std::string out_;
+  std::string_view in_;
+  bool reading_ = false;
+};
+
+template <typename T>
+concept Persistent = requires(T& value, Archive& archive) {
+  value.persist(archive);
+};
+
+template <typename T>
+requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+void persist(Archive& archive, T& value) { archive.raw(&value, sizeof value); }
+template <Persistent T>
+void persist(Archive& archive, T& value) {
+  value.persist(archive);
+}
+template <int Rows, int Options>
+void persist(Archive& archive, Eigen::Matrix<double, Rows, 1, Options>& value) {
+  archive.raw(value.data(), sizeof(double) * static_cast<std::size_t>(Rows));
+}
+void persist(Archive& archive, Quaternion& value);
+void persist(Archive& archive, std::string& value);
+void persist(Archive& archive, Instant& value);
+void persist(Archive& archive, Pose& value);
+void persist(Archive& archive, Twist& value);
+void persist(Archive& archive, BodyState& value);
+void persist(Archive& archive, Motion& value);
+
+template <int Dim>
+void persist(Archive& archive, Polynomial<Dim>& value) {
+  int degree = value.degree();
+  archive(degree);
+  if (degree < 0 || degree > Polynomial<Dim>::max_degree) {
+    throw ArchiveError("holds a polynomial of an impossible degree");
+  }
+  value.resize(degree);
+  for (int k = 0; k <= degree; ++k) {
+    archive(value[k]);
+  }
+}
+template <typename T, std::size_t N>
+void persist(Archive& archive, std::array<T, N>& values) {
+  for (T& value : values) {
+    archive(value);
+  }
+}
+template <typename T>
+void persist(Archive& archive, std::vector<T>& values) {
+  std::size_t n = values.size();
+  archive.count(n);
+  values.resize(n);
+  for (T& value : values) {
+    archive(value);
+  }
+}
+template <typename T>
+void persist(Archive& archive, std::optional<T>& value) {
+  bool present = value.has_value();
+  archive(present);
+  if (!present) {
+    value.reset();
+    return;
+  }
+  if (!value) {
+    value.emplace();
+  }
+  archive(*value);
+}
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace kairos::experiments {
+
+/// What a run is a run of, as `key, value` lines that a person can read: the scene's text, what was
+/// set, the method, the build. Runs of the same identity give the same bytes.
+using RunIdentity = std::vector<std::pair<std::string, std::string>>;
+
+/// A checkpoint on disk: a head of text that says what it is of, then the world in binary, with
+/// its length and checksum.
+struct CheckpointFile {
+  RunIdentity identity;
+  double time = 0.0;  ///< of the last frame in it, s
+  std::string world;  ///< for `Continuation::resume`
+};
+
+/// Replaces the file in one go. Throws `RunError`.
+void write_checkpoint(const std::string& path, const RunIdentity& identity, double time,
+                      std::string_view world);
+/// Throws `InputError` where the file is none of ours, of another version, cut off or changed.
+[[nodiscard]] CheckpointFile read_checkpoint(const std::string& path);
+/// Throws `InputError` with the first thing that differs.
+void require_same_run(const std::string& path, const RunIdentity& saved, const RunIdentity& wanted);
+
+/// A 64-bit fingerprint of bytes, FNV-1a: finds damage and differences, not forgery.
+[[nodiscard]] std::string fingerprint(std::string_view bytes);
+
+}  // namespace kairos::experiments

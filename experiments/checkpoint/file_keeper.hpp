@@ -1,0 +1,34 @@
+#pragma once
+
+#include "core/checkpoint.hpp"
+#include "experiments/checkpoint/checkpoint_file.hpp"
+
+#include <chrono>
+#include <string>
+
+namespace kairos::experiments {
+
+/// Keeps the latest checkpoint of a run in a file: the last one that the run offers, and before it
+/// one every `interval` seconds of a person's time, so that a run that is killed has lost no more.
+/// When they are made does not show in what a run gives.
+class FileKeeper : public CheckpointKeeper {
+ public:
+  FileKeeper(std::string path, RunIdentity identity, double interval)
+      : path_(std::move(path)), identity_(std::move(identity)), interval_(interval) {}
+
+  [[nodiscard]] bool wants(Instant t, bool last) override;
+  void keep(Instant t, std::string_view world) override;
+  /// Whether there is a file.
+  [[nodiscard]] bool kept() const { return kept_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::string path_;
+  RunIdentity identity_;
+  std::chrono::duration<double> interval_;
+  Clock::time_point since_ = Clock::now();
+  bool kept_ = false;
+};
+
+}  // namespace kairos::experiments
