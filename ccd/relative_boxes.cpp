@@ -1,5 +1,6 @@
 #include "ccd/relative_boxes.hpp"
 
+#include "ccd/box_separations.hpp"
 #include "ccd/roundoff.hpp"
 
 #include <algorithm>
@@ -8,80 +9,19 @@
 namespace kairos::ccd {
 namespace {
 
-constexpr std::array<int, 3> next{1, 2, 0};
-constexpr std::array<int, 3> after{2, 0, 1};
+constexpr std::array<int, 5> cyclic{0, 1, 2, 0, 1};  ///< cyclic[i + 1] comes after i
 
-/// The boxes and |R|: every projection of an extent is a sum of these. Indices are template
-/// arguments, so that all fifteen separations are straight arithmetic on registers.
-struct Projections {
-  const RelativeBoxes& s;
-  Matrix3 R;
-  explicit Projections(const RelativeBoxes& boxes) : s(boxes), R(boxes.axes_A.cwiseAbs()) {}
-
-  /// Separation along face normal I of a.
-  template <int I>
-  double face_a() const {
-    return std::abs(s.d_A[I]) - s.half_a[I] -
-           (s.half_b[0] * R(I, 0) + s.half_b[1] * R(I, 1) + s.half_b[2] * R(I, 2));
-  }
-  /// Projection of d on axis J of b.
-  template <int J>
-  double along_b() const {
-    return s.d_A[0] * s.axes_A(0, J) + s.d_A[1] * s.axes_A(1, J) + s.d_A[2] * s.axes_A(2, J);
-  }
-  template <int J>
-  double face_b() const {
-    return std::abs(along_b<J>()) - s.half_b[J] -
-           (s.half_a[0] * R(0, J) + s.half_a[1] * R(1, J) + s.half_a[2] * R(2, J));
-  }
-  /// Projection of d on e_I x (axis J of b).
-  template <int I, int J>
-  double along_edges() const {
-    constexpr int k = next[I];
-    constexpr int l = after[I];
-    return s.d_A[l] * s.axes_A(k, J) - s.d_A[k] * s.axes_A(l, J);
-  }
-  template <int I, int J>
-  double edges() const {
-    constexpr int k = next[I];
-    constexpr int l = after[I];
-    constexpr int m = next[J];
-    constexpr int n = after[J];
-    return std::abs(along_edges<I, J>()) - (s.half_a[k] * R(l, J) + s.half_a[l] * R(k, J)) -
-           (s.half_b[m] * R(I, n) + s.half_b[n] * R(I, m));
-  }
-  /// Square of the sine between the edges.
-  template <int I, int J>
-  double sine_squared() const {
-    const double x = s.axes_A(next[I], J);
-    const double y = s.axes_A(after[I], J);
-    return x * x + y * y;
+/// Edge i of a and edge j of b; k, l and m, n come after them in cyclic order.
+struct EdgePair {
+  int i, j, k, l, m, n;
+  explicit EdgePair(int axis) : i((axis - 6) / 3), j((axis - 6) % 3) {
+    const auto after = [](int x, int by) { return cyclic[static_cast<std::size_t>(x + by)]; };
+    k = after(i, 1);
+    l = after(i, 2);
+    m = after(j, 1);
+    n = after(j, 2);
   }
 };
-
-/// Calls f<I, J>() for all edge pairs in order; stops where one returns true.
-template <typename F>
-bool any_edge_pair(const F& f) {
-  return f.template operator()<0, 0>() || f.template operator()<0, 1>() ||
-         f.template operator()<0, 2>() || f.template operator()<1, 0>() ||
-         f.template operator()<1, 1>() || f.template operator()<1, 2>() ||
-         f.template operator()<2, 0>() || f.template operator()<2, 1>() ||
-         f.template operator()<2, 2>();
-}
-
-template <int Axis>
-AxisSeparation separation_along(const Projections& p) {
-  if constexpr (Axis < 3) {
-    return {Axis, p.face_a<Axis>(), 1.0, p.s.d_A[Axis] < 0.0 ? -1.0 : 1.0};
-  } else if constexpr (Axis < 6) {
-    return {Axis, p.face_b<Axis - 3>(), 1.0, p.along_b<Axis - 3>() < 0.0 ? -1.0 : 1.0};
-  } else {
-    constexpr int i = (Axis - 6) / 3;
-    constexpr int j = (Axis - 6) % 3;
-    return {Axis, p.edges<i, j>(), std::sqrt(p.sine_squared<i, j>()),
-            p.along_edges<i, j>() < 0.0 ? -1.0 : 1.0};
-  }
-}
 
 }  // namespace
 
@@ -104,40 +44,54 @@ double RelativeBoxes::error() const {
 }
 
 AxisSeparation axis_separation(const RelativeBoxes& s, int axis) {
-  using Along = AxisSeparation (*)(const Projections&);
-  static constexpr std::array<Along, axis_count> along{
-      separation_along<0>,  separation_along<1>,  separation_along<2>,  separation_along<3>,
-      separation_along<4>,  separation_along<5>,  separation_along<6>,  separation_along<7>,
-      separation_along<8>,  separation_along<9>,  separation_along<10>, separation_along<11>,
-      separation_along<12>, separation_along<13>, separation_along<14>};
-  return along[static_cast<std::size_t>(axis)](Projections(s));
+  const Matrix3& R = s.axes_A;
+  if (axis < 3) {
+    const double extent = s.half_a[axis] + s.half_b.dot(R.row(axis).cwiseAbs());
+    return {axis, std::abs(s.d_A[axis]) - extent, 1.0, s.d_A[axis] < 0.0 ? -1.0 : 1.0};
+  }
+  if (axis < 6) {
+    const double along = s.d_A.dot(R.col(axis - 3));
+    const double extent = s.half_b[axis - 3] + s.half_a.dot(R.col(axis - 3).cwiseAbs());
+    return {axis, std::abs(along) - extent, 1.0, along < 0.0 ? -1.0 : 1.0};
+  }
+  const EdgePair e(axis);
+  const double x = R(e.k, e.j);
+  const double y = R(e.l, e.j);
+  const double along = s.d_A[e.l] * x - s.d_A[e.k] * y;
+  const double extent =
+      (s.half_a[e.k] * std::abs(y) + s.half_a[e.l] * std::abs(x)) +
+      (s.half_b[e.m] * std::abs(R(e.i, e.n)) + s.half_b[e.n] * std::abs(R(e.i, e.m)));
+  return {axis, std::abs(along) - extent, std::sqrt(x * x + y * y), along < 0.0 ? -1.0 : 1.0};
 }
 
 AxisSeparation greatest_separation(const RelativeBoxes& s) {
-  const Projections p(s);
-  const std::array<double, 6> faces{p.face_a<0>(), p.face_a<1>(), p.face_a<2>(),
-                                    p.face_b<0>(), p.face_b<1>(), p.face_b<2>()};
+  BoxSeparations all;
+  box_separations(s, all);
   int best = 0;
+  double value = all.face_a[0];
   for (int i = 1; i < 6; ++i) {
-    if (faces[static_cast<std::size_t>(i)] > faces[static_cast<std::size_t>(best)]) {
+    const double f = i < 3 ? all.face_a[i] : all.face_b[i - 3];
+    if (f > value) {
+      value = f;
       best = i;
     }
   }
-  double value = faces[static_cast<std::size_t>(best)];
   const double error = s.error();
-  any_edge_pair([&]<int I, int J>() {
-    const double f = p.edges<I, J>() - error;
-    // Dividing by a sine raises only positive values: most pairs need no root.
-    if (f <= value && (f <= 0.0 ? value >= 0.0 : f * f <= value * value * p.sine_squared<I, J>())) {
-      return false;
+  for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i < 3; ++i) {
+      const double f = all.edge[j][i] - error;
+      const double square = all.sine_squared[j][i];
+      // Dividing by a sine raises only positive values: most pairs need no root.
+      if (f <= value && (f <= 0.0 ? value >= 0.0 : f * f <= value * value * square)) {
+        continue;
+      }
+      const double length = std::sqrt(square);
+      if (f > value * length && length > 0.0) {
+        value = f / length;
+        best = 6 + 3 * i + j;
+      }
     }
-    const double length = std::sqrt(p.sine_squared<I, J>());
-    if (f > value * length && length > 0.0) {
-      value = f / length;
-      best = 6 + 3 * I + J;
-    }
-    return false;
-  });
+  }
   return axis_separation(s, best);
 }
 
@@ -148,59 +102,23 @@ Vector3 axis_normal(const RelativeBoxes& s, const AxisSeparation& axis) {
   if (axis.axis < 6) {
     return axis.sign * s.axes_A.col(axis.axis - 3);
   }
-  const int i = (axis.axis - 6) / 3;
-  const int j = (axis.axis - 6) % 3;
+  const EdgePair e(axis.axis);
   Vector3 n = Vector3::Zero();
-  n[next[static_cast<std::size_t>(i)]] = -s.axes_A(after[static_cast<std::size_t>(i)], j);
-  n[after[static_cast<std::size_t>(i)]] = s.axes_A(next[static_cast<std::size_t>(i)], j);
+  n[e.k] = -s.axes_A(e.l, e.j);
+  n[e.l] = s.axes_A(e.k, e.j);
   return n * (axis.sign / axis.length);
 }
 
 bool boxes_overlap(const RelativeBoxes& s) {
-  const Projections p(s);
-  if (p.face_a<0>() > 0.0 || p.face_a<1>() > 0.0 || p.face_a<2>() > 0.0 || p.face_b<0>() > 0.0 ||
-      p.face_b<1>() > 0.0 || p.face_b<2>() > 0.0) {
-    return false;
-  }
+  BoxSeparations all;
+  box_separations(s, all);
   const double error = s.error();
-  return !any_edge_pair([&]<int I, int J>() { return p.edges<I, J>() > error; });
-}
-
-Verdict classify(const RelativeBoxes& s) {
-  const Projections p(s);
-  const double error = s.error();
-  if (p.face_a<0>() > error || p.face_a<1>() > error || p.face_a<2>() > error ||
-      p.face_b<0>() > error || p.face_b<1>() > error || p.face_b<2>() > error) {
-    return Verdict::separated;
+  bool apart = false;
+  for (int i = 0; i < 3; ++i) {
+    apart = apart || all.face_a[i] > 0.0 || all.face_b[i] > 0.0 || all.edge[0][i] > error ||
+            all.edge[1][i] > error || all.edge[2][i] > error;
   }
-  double crossed = -infinity;
-  const bool apart = any_edge_pair([&]<int I, int J>() {
-    const double f = p.edges<I, J>();
-    crossed = std::max(crossed, f);
-    return f > error;
-  });
-  if (apart) {
-    return Verdict::separated;
-  }
-  const double faces = std::max(
-      {p.face_a<0>(), p.face_a<1>(), p.face_a<2>(), p.face_b<0>(), p.face_b<1>(), p.face_b<2>()});
-  if (faces >= -error) {
-    return Verdict::undecided;
-  }
-  if (crossed < -error) {
-    return Verdict::overlapping;
-  }
-  // Some edge pair cannot tell. Were two edges exactly parallel, the six faces alone would decide:
-  // the cross-sections are rectangles. Turning b by the small angle between them moves its support
-  // and the separations by less than 4 sine * size, so faces that overlap by more decide still.
-  double least = infinity;
-  any_edge_pair([&]<int I, int J>() {
-    least = std::min(least, p.sine_squared<I, J>());
-    return false;
-  });
-  const double size = s.d_A.lpNorm<1>() + s.half_a.sum() + s.half_b.sum();
-  const double moved = 4.0 * (std::sqrt(least) + 16.0 * unit_roundoff) * size;
-  return moved < -faces - error ? Verdict::overlapping : Verdict::undecided;
+  return !apart;
 }
 
 }  // namespace kairos::ccd

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ccd/oriented_box.hpp"
 #include "core/shape.hpp"
 
 #include <array>
@@ -52,5 +53,6 @@ enum class Verdict { separated, overlapping, undecided };
 /// The same question proven: `separated` and `overlapping` hold for the real numbers that the
 /// arguments are, `undecided` means that rounding could have decided.
 [[nodiscard]] Verdict classify(const RelativeBoxes& boxes);
+[[nodiscard]] Verdict classify(const OrientedBox& a, const OrientedBox& b);
 
 }  // namespace kairos::ccd

@@ -1,16 +1,10 @@
 #pragma once
 
+#include "ccd/oriented_box.hpp"
 #include "core/broad_phase.hpp"
 #include "core/contact_detector.hpp"
 
 namespace kairos::ccd {
-
-/// An oriented box in the world.
-struct OrientedBox {
-  Vector3 centre = Vector3::Zero();        ///< m
-  Matrix3 axes = Matrix3::Identity();      ///< columns, orthonormal
-  Vector3 half_extents = Vector3::Zero();  ///< m
-};
 
 /// How far a moving shape reaches along a fixed direction over [s0, s1] of its motion: an interval
 /// that contains n . x for all its points x, rounding included. The translation is bounded by its

@@ -106,24 +106,30 @@ Motion read_motion(Bytes& bytes, double scale, const Vector3& offset) {
   return motion;
 }
 
-}  // namespace
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  Bytes bytes({data, size});
+/// False where the bytes are no query: two half-spaces, or a quaternion polynomial that passes zero
+/// within the window.
+bool decode_query(std::span<const std::uint8_t> data, Query& q) {
+  Bytes bytes(data);
   static constexpr double scales[] = {1.0, 1e-9, 1e9, 1.0, 1e-3, 1.0, 1e3, 1.0};
   const double scale = scales[bytes.below(8)];
-  const Vector3 offset = bytes.below(4) == 3 ? Vector3(1e6, -5e5, 2.5e5) : Vector3(Vector3::Zero());
-  Query q;
+  const Vector3 offset =
+      bytes.below(4) == 3 ? Vector3(1e6, -5e5, 2.5e5) : Vector3(Vector3::Zero());
   q.a = read_shape(bytes, scale);
   q.b = read_shape(bytes, scale);
   if (std::holds_alternative<HalfSpace>(q.a) && std::holds_alternative<HalfSpace>(q.b)) {
-    return 0;
+    return false;
   }
   q.motion_a = read_motion(bytes, scale, offset);
   q.motion_b = read_motion(bytes, scale, offset);
-  // A quaternion polynomial that passes zero within the window is no motion.
-  if (!std::isfinite(q.motion_a.angular_speed_bound(0.0, 1.0)) ||
-      !std::isfinite(q.motion_b.angular_speed_bound(0.0, 1.0))) {
+  return std::isfinite(q.motion_a.angular_speed_bound(0.0, 1.0)) &&
+         std::isfinite(q.motion_b.angular_speed_bound(0.0, 1.0));
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  Query q;
+  if (!decode_query({data, size}, q)) {
     return 0;
   }
   static const auto certified = ccd::make_certified();
