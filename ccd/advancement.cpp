@@ -40,8 +40,16 @@ class Advancement {
   }
 
   TimeOfImpact run() {
-    look(0.0);
-    if (witness_.gap <= k_.error && !leave_touch()) {
+    const double clear = clear_of_balls(kind_, motion_);
+    if (clear > 0.0) {
+      ++evaluations_;
+      if (clear >= motion_.duration()) {
+        separated();
+        return answer_;
+      }
+    }
+    look(clear);
+    if (clear == 0.0 && witness_.gap <= k_.error && !leave_touch()) {
       return answer_;
     }
     while (advance_once()) {
@@ -338,7 +346,9 @@ void Advancement::nearest_points() {
   const Vector3 origin_a = a_.motion.position(start_of(a_.motion, window_) + answer_.t_lo);
   if (kind_ == PairKind::box_box) {
     const RelativeBoxes boxes(motion_.half_a(), k_.R_WA, motion_.half_b(), k_.R_WB, k_.d);
-    const ContactPatch patch = contact_patch(boxes, greatest_separation(boxes));
+    const AxisSeparation axis{witness_.axis, witness_.gap * witness_.length, witness_.length,
+                              witness_.sign};
+    const ContactPatch patch = contact_patch(boxes, axis);
     answer_.witness_a = origin_a + k_.R_WA * patch.on_a;
     answer_.witness_b = origin_a + k_.R_WA * patch.on_b;
     return;

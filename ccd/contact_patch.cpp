@@ -91,6 +91,22 @@ ContactPatch on_face(const Vector3& reference, int axis, double sign, const Vect
   const Vector3 centre = d + R.col(incident) * (side * half[incident]);
   const Vector3 u = R.col(m) * half[m];
   const Vector3 v = R.col(n) * half[n];
+  // Roundoff of coordinates that went through a rotation and a clip: 1024 u of the sizes.
+  const double margin = 1024.0 * unit_roundoff * (reference.sum() + half.sum());
+  // A corner that is lowest alone needs no clipping.
+  const double rise_u = std::abs(u[axis]);
+  const double rise_v = std::abs(v[axis]);
+  if (std::min(rise_u, rise_v) > 2.0 * margin) {
+    const Vector3 corner =
+        centre - (sign * u[axis] > 0.0 ? 1.0 : -1.0) * u - (sign * v[axis] > 0.0 ? 1.0 : -1.0) * v;
+    const int k = (axis + 1) % 3;
+    const int l = (axis + 2) % 3;
+    if (std::abs(corner[k]) < reference[k] && std::abs(corner[l]) < reference[l]) {
+      Vector3 on_a = corner;
+      on_a[axis] = sign * reference[axis];
+      return {on_a, corner};
+    }
+  }
   Polygon face;
   face.add(centre + u + v);
   face.add(centre - u + v);
@@ -108,8 +124,7 @@ ContactPatch on_face(const Vector3& reference, int axis, double sign, const Vect
   for (int i = 0; i < face.size; ++i) {
     lowest = std::min(lowest, sign * face[i][axis]);
   }
-  // Roundoff of coordinates that went through a rotation and a clip: 1024 u of the sizes.
-  const double level = lowest + 1024.0 * unit_roundoff * (reference.sum() + half.sum());
+  const double level = lowest + margin;
   const Vector3 on_b = centroid(clipped(face, axis, sign, level));
   Vector3 on_a = on_b.cwiseMax(-reference).cwiseMin(reference);
   on_a[axis] = sign * reference[axis];

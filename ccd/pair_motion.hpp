@@ -48,8 +48,13 @@ class PairMotion {
   [[nodiscard]] bool turns_b() const { return turns_b_; }
   /// True if d is a parabola and both rates of turn are constant: bounds then hold for ever.
   [[nodiscard]] bool simple() const { return simple_; }
+  /// True if d is a parabola, whatever turns.
+  [[nodiscard]] bool parabolic() const { return d_.degree() <= 2; }
 
   void evaluate(double t, Kinematics& k) const;
+  /// Only what does not depend on orientations: t, d, v, c; the errors are those of the distance of
+  /// the origins.
+  void evaluate_translation(double t, Kinematics& k) const;
   /// Bounds on [t, t + horizon] (cut at the end of the window).
   [[nodiscard]] TurnBounds bounds(double t, double horizon) const;
   /// Angle that both turn through in the window together at constant rates, rad (what a polynomial

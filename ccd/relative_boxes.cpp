@@ -1,6 +1,5 @@
 #include "ccd/relative_boxes.hpp"
 
-#include "ccd/box_separations.hpp"
 #include "ccd/roundoff.hpp"
 
 #include <algorithm>
@@ -64,37 +63,6 @@ AxisSeparation axis_separation(const RelativeBoxes& s, int axis) {
   return {axis, std::abs(along) - extent, std::sqrt(x * x + y * y), along < 0.0 ? -1.0 : 1.0};
 }
 
-AxisSeparation greatest_separation(const RelativeBoxes& s) {
-  BoxSeparations all;
-  box_separations(s, all);
-  int best = 0;
-  double value = all.face_a[0];
-  for (int i = 1; i < 6; ++i) {
-    const double f = i < 3 ? all.face_a[i] : all.face_b[i - 3];
-    if (f > value) {
-      value = f;
-      best = i;
-    }
-  }
-  const double error = s.error();
-  for (int j = 0; j < 3; ++j) {
-    for (int i = 0; i < 3; ++i) {
-      const double f = all.edge[j][i] - error;
-      const double square = all.sine_squared[j][i];
-      // Dividing by a sine raises only positive values: most pairs need no root.
-      if (f <= value && (f <= 0.0 ? value >= 0.0 : f * f <= value * value * square)) {
-        continue;
-      }
-      const double length = std::sqrt(square);
-      if (f > value * length && length > 0.0) {
-        value = f / length;
-        best = 6 + 3 * i + j;
-      }
-    }
-  }
-  return axis_separation(s, best);
-}
-
 Vector3 axis_normal(const RelativeBoxes& s, const AxisSeparation& axis) {
   if (axis.axis < 3) {
     return axis.sign * Vector3::Unit(axis.axis);
@@ -107,18 +75,6 @@ Vector3 axis_normal(const RelativeBoxes& s, const AxisSeparation& axis) {
   n[e.k] = -s.axes_A(e.l, e.j);
   n[e.l] = s.axes_A(e.k, e.j);
   return n * (axis.sign / axis.length);
-}
-
-bool boxes_overlap(const RelativeBoxes& s) {
-  BoxSeparations all;
-  box_separations(s, all);
-  const double error = s.error();
-  bool apart = false;
-  for (int i = 0; i < 3; ++i) {
-    apart = apart || all.face_a[i] > 0.0 || all.face_b[i] > 0.0 || all.edge[0][i] > error ||
-            all.edge[1][i] > error || all.edge[2][i] > error;
-  }
-  return !apart;
 }
 
 }  // namespace kairos::ccd

@@ -42,6 +42,9 @@ struct AxisSeparation {
 /// rounding error before it is normalised: nearly parallel edges, whose cross product is noise,
 /// can never win, and no angle has to be called "parallel".
 [[nodiscard]] AxisSeparation greatest_separation(const RelativeBoxes& boxes);
+[[nodiscard]] AxisSeparation greatest_separation(const Vector3& half_a, const Matrix3& R_WA,
+                                                 const Vector3& half_b, const Matrix3& R_WB,
+                                                 const Vector3& d_W);
 /// Unit normal of an axis from a to b, in the frame of a.
 [[nodiscard]] Vector3 axis_normal(const RelativeBoxes& boxes, const AxisSeparation& axis);
 
@@ -54,5 +57,7 @@ enum class Verdict { separated, overlapping, undecided };
 /// arguments are, `undecided` means that rounding could have decided.
 [[nodiscard]] Verdict classify(const RelativeBoxes& boxes);
 [[nodiscard]] Verdict classify(const OrientedBox& a, const OrientedBox& b);
+[[nodiscard]] Verdict classify(const Vector3& half_a, const Matrix3& R_WA, const Vector3& half_b,
+                               const Matrix3& R_WB, const Vector3& d_W);
 
 }  // namespace kairos::ccd

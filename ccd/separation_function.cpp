@@ -51,6 +51,12 @@ SeparationFunction::SeparationFunction(const PairMotion& motion, const Kinematic
     case WitnessFrame::edges:
       along_edges();
   }
+  least_slope_ = tangent() - k.rate_error;
+  if (curvature_depends_on_horizon()) {
+    distance_ = k.d.norm();
+    speed_ = k.v.norm();
+    c_ = k.c.norm();
+  }
 }
 
 void SeparationFunction::add_supports(const Vector3& half, const Matrix3& axes, const Vector3& g) {
@@ -124,18 +130,19 @@ void SeparationFunction::along_edges() {
   const double sign = a.cross(b).dot(n) < 0.0 ? -1.0 : 1.0;
   const Vector3 n_rate = sign * (k_.w_a.cross(a).cross(b) + a.cross(k_.w_b.cross(b)));
   slope_ = n.dot(k_.v) + n_rate.dot(k_.d);
+  // An axis x of a moves at w_a x x, so that n . x changes at (n' + n x w_a) . x.
+  const Vector3 g_a = n_rate + n.cross(k_.w_a);
+  const Vector3 g_b = n_rate + n.cross(k_.w_b);
   double weights = 0.0;
   for (int i = 0; i < 3; ++i) {
     if (i != witness_.edge_a && motion_.half_a()[i] > 0.0) {
-      const Vector3 axis = k_.R_WA.col(i);
-      terms_[count_++] = {motion_.half_a()[i], n.dot(axis),
-                          n_rate.dot(axis) + n.dot(k_.w_a.cross(axis))};
+      const auto axis = k_.R_WA.col(i);
+      terms_[count_++] = {motion_.half_a()[i], n.dot(axis), g_a.dot(axis)};
       weights += motion_.half_a()[i];
     }
     if (i != witness_.edge_b && motion_.half_b()[i] > 0.0) {
-      const Vector3 axis = k_.R_WB.col(i);
-      terms_[count_++] = {motion_.half_b()[i], n.dot(axis),
-                          n_rate.dot(axis) + n.dot(k_.w_b.cross(axis))};
+      const auto axis = k_.R_WB.col(i);
+      terms_[count_++] = {motion_.half_b()[i], n.dot(axis), g_b.dot(axis)};
       weights += motion_.half_b()[i];
     }
   }
@@ -179,9 +186,9 @@ double SeparationFunction::curvature(double horizon) const {
     default:
       break;
   }
-  const double c = k_.c.norm() + bend;
-  const double speed = k_.v.norm() + 2.0 * c * horizon;
-  const double distance = k_.d.norm() + (k_.v.norm() + c * horizon) * horizon;
+  const double c = c_ + bend;
+  const double speed = speed_ + 2.0 * c * horizon;
+  const double distance = distance_ + (speed_ + c * horizon) * horizon;
   if (witness_.frame == WitnessFrame::edges) {
     const double w = turn_.w_a + turn_.w_b;
     const double second_of_n = w * w + turn_.alpha_a + turn_.alpha_b;
@@ -198,46 +205,48 @@ double SeparationFunction::curvature(double horizon) const {
   return second_ - third * horizon / 6.0 - fixed_bend_;
 }
 
-double SeparationFunction::rate() const { return tangent() / witness_.length; }
+double SeparationFunction::rate() const { return (least_slope_ + k_.rate_error) / witness_.length; }
+
+double SeparationFunction::step_within(double reach) const {
+  const double second = curvature(reach);
+  const double step = std::min(reach, first_root(value_, least_slope_, second));
+  // Over [0, step] every kinked term stays below its chord.
+  return std::min(step, first_root(value_, chord(step) - k_.rate_error, second));
+}
 
 double SeparationFunction::advance(double horizon) const {
   if (!(value_ > 0.0)) {
     return 0.0;
   }
-  const double least_slope = tangent() - k_.rate_error;
   if (!curvature_depends_on_horizon()) {
     const double second = curvature(horizon);
-    double h = std::min(horizon, first_root(value_, least_slope, second));
+    double h = std::min(horizon, first_root(value_, least_slope_, second));
     if (count_ > 0) {
-      // Over [0, h] every kinked term stays below its chord; where nothing ends h, a radian does.
+      // Where nothing ends h, a radian does.
       h = std::isfinite(h) ? h : 1.0 / (turn_.w_a + turn_.w_b);
       h = std::min(h, first_root(value_, chord(h) - k_.rate_error, second));
     }
     return h * (1.0 - 64.0 * u);
   }
-  // The quadratic holds on a horizon of our choice: about twice the step that it allows.
+  // The quadratic holds on a horizon of our choice: about twice the step that it allows. Where the
+  // gap closes, that is near its tangent's root.
   const double turning = turn_.w_a + turn_.w_b;
   double reach = std::min(horizon, turning > 0.0 ? 1.0 / turning : horizon);
   if (!std::isfinite(reach)) {
     return 0.0;
   }
-  double h = 0.0;
-  for (int pass = 0; pass < 2; ++pass) {
-    const double second = curvature(reach);
-    double step = std::min(reach, first_root(value_, least_slope, second));
-    step = std::min(step, first_root(value_, chord(step) - k_.rate_error, second));
-    h = std::max(h, step);
-    if (step > 0.4 * reach) {
-      break;
-    }
-    reach = 2.0 * step;
+  if (least_slope_ < 0.0) {
+    reach = std::min(reach, -1.25 * value_ / least_slope_);
+  }
+  double h = step_within(reach);
+  if (h < 0.4 * reach) {
+    h = std::max(h, step_within(2.0 * h));
   }
   return h * (1.0 - 64.0 * u);
 }
 
 double SeparationFunction::advance_from_touch(double horizon) const {
-  const double slope = tangent() - k_.rate_error;
-  if (!(slope > 0.0)) {
+  if (!(least_slope_ > 0.0)) {
     return 0.0;
   }
   // Start 2 errors below the present value and look for the second root.
@@ -320,10 +329,12 @@ Witness from_plane(const PairMotion& motion, const Kinematics& k) {
 }
 
 Witness from_boxes(const PairMotion& motion, const Kinematics& k) {
-  const RelativeBoxes boxes(motion.half_a(), k.R_WA, motion.half_b(), k.R_WB, k.d);
-  const AxisSeparation best = greatest_separation(boxes);
+  const AxisSeparation best =
+      greatest_separation(motion.half_a(), k.R_WA, motion.half_b(), k.R_WB, k.d);
   Witness witness;
   witness.gap = best.gap() - motion.reach();
+  witness.axis = best.axis;
+  witness.sign = best.sign;
   if (best.axis < 3) {
     witness.frame = motion.turns_a() ? WitnessFrame::a : WitnessFrame::world;
     witness.n = best.sign * k.R_WA.col(best.axis);
@@ -368,6 +379,34 @@ Witness between_balls(PairKind kind, const PairMotion& motion, const Kinematics&
   return witness;
 }
 
+double clear_of_balls(PairKind kind, const PairMotion& motion) {
+  if (!motion.parabolic() || kind == PairKind::sphere_plane || kind == PairKind::box_plane) {
+    return 0.0;
+  }
+  const double reach =
+      (motion.reach() + motion.radius_a() + motion.radius_b()) * (1.0 + 8.0 * unit_roundoff);
+  double t = 0.0;
+  Kinematics k;
+  // Along the line of the centres the distance is a parabola. Three such lines come near enough to
+  // where the balls touch: the bodies inside them matter then.
+  for (int line = 0; line < 3; ++line) {
+    motion.evaluate_translation(t, k);
+    const double distance = k.d.norm();
+    const double value = distance - reach - k.error;
+    if (!(value > 0.05 * reach)) {
+      break;
+    }
+    const Vector3 n = k.d / distance;
+    const double step = first_root(value, n.dot(k.v) - k.rate_error, n.dot(k.c));
+    const double remaining = motion.duration() - t;
+    if (step >= remaining) {
+      return motion.duration();
+    }
+    t += step * (1.0 - 64.0 * u);
+  }
+  return t;
+}
+
 Witness find_witness(PairKind kind, const PairMotion& motion, const Kinematics& k) {
   switch (kind) {
     case PairKind::sphere_sphere:
@@ -396,8 +435,7 @@ bool proven_overlap(PairKind kind, const PairMotion& motion, const Kinematics& k
     const double separation = witness.gap + motion.reach();
     return separation + k.error / witness.length < 0.57 * motion.reach();
   }
-  return classify(RelativeBoxes(motion.half_a(), k.R_WA, motion.half_b(), k.R_WB, k.d)) ==
-         Verdict::overlapping;
+  return classify(motion.half_a(), k.R_WA, motion.half_b(), k.R_WB, k.d) == Verdict::overlapping;
 }
 
 }  // namespace kairos::ccd

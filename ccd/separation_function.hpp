@@ -20,6 +20,8 @@ struct Witness {
   double length = 1.0;           ///< 1; for a cross product of edges the sine between them
   int edge_a = 0;                ///< `edges` only
   int edge_b = 0;                ///< `edges` only
+  int axis = 0;                  ///< two boxes only: which of the 15 it is
+  double sign = 1.0;             ///< two boxes only: as in `AxisSeparation`
   double gap = 0.0;              ///< separation along the unit direction, m
 };
 
@@ -66,22 +68,31 @@ class SeparationFunction {
   [[nodiscard]] bool curvature_depends_on_horizon() const {
     return witness_.frame != WitnessFrame::world && witness_.frame != WitnessFrame::spheres;
   }
+  /// The step that the quadratic on [0, reach] allows, at most `reach`.
+  [[nodiscard]] double step_within(double reach) const;
 
   const PairMotion& motion_;
   const Kinematics& k_;
   const TurnBounds& turn_;
-  Witness witness_;
-  double value_ = 0.0;       ///< of the unnormalised gap, m
-  double slope_ = 0.0;       ///< of n . d
-  double second_ = 0.0;      ///< n . d: half its second derivative, where it is exact
-  double fixed_bend_ = 0.0;  ///< what bounds the supports' second order, h-independent
-  Term terms_[6];
+  const Witness& witness_;
+  double value_ = 0.0;        ///< of the unnormalised gap, m
+  double slope_ = 0.0;        ///< of n . d
+  double second_ = 0.0;       ///< n . d: half its second derivative, where it is exact
+  double fixed_bend_ = 0.0;   ///< what bounds the supports' second order, h-independent
+  double least_slope_ = 0.0;  ///< of f at h = 0, rounding included
+  double distance_ = 0.0;     ///< |d|, where the curvature asks for it
+  double speed_ = 0.0;        ///< |v|
+  double c_ = 0.0;            ///< |c|
   int count_ = 0;
+  Term terms_[6];
 };
 
 [[nodiscard]] PairKind pair_kind(const Shape& a, const Shape& b);
 /// The witness of the balls around the shapes (`gap` is negative infinity if there is none).
 [[nodiscard]] Witness between_balls(PairKind kind, const PairMotion& motion, const Kinematics& k);
+/// A time up to which the balls around two bodies on parabolas are proven apart, whatever turns; 0
+/// if they are not apart now, or if there are none. Costs no rotation.
+[[nodiscard]] double clear_of_balls(PairKind kind, const PairMotion& motion);
 /// The witness of greatest separation; shapes in the order sphere, box, half-space.
 [[nodiscard]] Witness find_witness(PairKind kind, const PairMotion& motion, const Kinematics& k);
 /// Is the overlap of the shapes at this instant proven?
