@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -30,7 +31,8 @@ void print_race(const std::string& title, const std::string& unit,
 
 /// Stepping: `original` beside a bare loop and ODE, `event-driven` by the impact.
 void bench_stepping(int rounds);
-/// Queries: overlap and time of impact of boxes, beside FCL and Bullet.
-void bench_queries(int rounds);
+/// Queries: overlap and time of impact of as many distinct pairs, beside FCL and Bullet, with what
+/// each missed; then the ratios against their bars.
+void bench_queries(std::size_t pairs, int rounds);
 
 }  // namespace kairos::experiments

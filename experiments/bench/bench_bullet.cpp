@@ -7,6 +7,8 @@
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>
 #include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
 
+#include <limits>
+
 namespace kairos::experiments {
 namespace {
 
@@ -21,22 +23,24 @@ btTransform transform(const Pose& pose) {
                      vector(pose.position));
 }
 
-std::int64_t impacts(const std::vector<BenchPair>& pairs) {
-  std::int64_t count = 0;
-  btVoronoiSimplexSolver simplex;
-  btGjkEpaPenetrationDepthSolver penetration;
-  for (const BenchPair& pair : pairs) {
-    const btBoxShape a(vector(std::get<Box>(pair.a).half_extents));
-    const btBoxShape b(vector(std::get<Box>(pair.b).half_extents));
-    btContinuousConvexCollision query(&a, &b, &simplex, &penetration);
-    btConvexCast::CastResult result;
-    count += query.calcTimeOfImpact(
-                 transform(pair.motion_a.pose(0.0)), transform(pair.motion_a.pose(1.0)),
-                 transform(pair.motion_b.pose(0.0)), transform(pair.motion_b.pose(1.0)), result)
-                 ? 1
-                 : 0;
-  }
-  return count;
+Contest impacts(const std::vector<BoxPair>& pairs) {
+  return [&pairs](std::size_t first, std::size_t last, std::vector<double>& answers) {
+    btVoronoiSimplexSolver simplex;
+    btGjkEpaPenetrationDepthSolver penetration;
+    for (std::size_t i = first; i < last; ++i) {
+      const BoxPair& pair = pairs[i];
+      btBoxShape a(vector(pair.a.half_extents));
+      btBoxShape b(vector(pair.b.half_extents));
+      a.setMargin(0);  // rounded corners would be late
+      b.setMargin(0);
+      btContinuousConvexCollision query(&a, &b, &simplex, &penetration);
+      btConvexCast::CastResult result;
+      answers[i] = query.calcTimeOfImpact(transform(pair.start_a), transform(pair.end_a),
+                                          transform(pair.start_b), transform(pair.end_b), result)
+                       ? static_cast<double>(result.m_fraction)
+                       : std::numeric_limits<double>::infinity();
+    }
+  };
 }
 
 }  // namespace

@@ -8,10 +8,13 @@
 #include <fcl/narrowphase/continuous_collision.h>
 #include <fcl/narrowphase/continuous_collision_request.h>
 
-#include <memory>
+#include <limits>
+#include <utility>
 
 namespace kairos::experiments {
 namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
 
 fcl::Transform3d transform(const Pose& pose) {
   fcl::Transform3d t = fcl::Transform3d::Identity();
@@ -20,39 +23,43 @@ fcl::Transform3d transform(const Pose& pose) {
   return t;
 }
 
-std::int64_t overlaps(const std::vector<BenchPair>& pairs) {
-  std::int64_t count = 0;
-  for (const BenchPair& pair : pairs) {
-    const auto box = [](const Shape& shape, const Motion& motion) {
-      const Pose pose = motion.pose(0.0);
-      return fcl::OBBd(pose.orientation.toRotationMatrix(), pose.position,
-                       std::get<Box>(shape).half_extents);
-    };
-    count += box(pair.a, pair.motion_a).overlap(box(pair.b, pair.motion_b)) ? 1 : 0;
+Contest overlaps(const std::vector<BoxPair>& pairs) {
+  const auto box = [](const Box& shape, const Pose& pose) {
+    return fcl::OBBd(pose.orientation.toRotationMatrix(), pose.position, shape.half_extents);
+  };
+  std::vector<std::pair<fcl::OBBd, fcl::OBBd>> boxes;
+  boxes.reserve(pairs.size());
+  for (const BoxPair& pair : pairs) {
+    boxes.emplace_back(box(pair.a, pair.start_a), box(pair.b, pair.start_b));
   }
-  return count;
+  return [boxes = std::move(boxes)](std::size_t first, std::size_t last,
+                                    std::vector<double>& answers) {
+    for (std::size_t i = first; i < last; ++i) {
+      answers[i] = boxes[i].first.overlap(boxes[i].second) ? 0.0 : never;
+    }
+  };
 }
 
-/// FCL's conservative advancement, its poses at both ends of the window.
-std::int64_t impacts(const std::vector<BenchPair>& pairs) {
-  std::int64_t count = 0;
+/// FCL's conservative advancement between the poses at both ends, with its default accuracy (1e-4).
+Contest impacts(const std::vector<BoxPair>& pairs) {
   fcl::ContinuousCollisionRequestd request;
   request.ccd_motion_type = fcl::CCDM_LINEAR;
   request.ccd_solver_type = fcl::CCDC_CONSERVATIVE_ADVANCEMENT;
   request.gjk_solver_type = fcl::GST_LIBCCD;
-  for (const BenchPair& pair : pairs) {
-    const auto box = [](const Shape& shape) {
-      const Vector3 full = 2.0 * std::get<Box>(shape).half_extents;
-      return std::make_shared<fcl::Boxd>(full.x(), full.y(), full.z());
+  return [&pairs, request](std::size_t first, std::size_t last, std::vector<double>& answers) {
+    const auto box = [](const Box& shape) {
+      return fcl::Boxd(fcl::Vector3d(2.0 * shape.half_extents));
     };
-    const fcl::CollisionObjectd a(box(pair.a), transform(pair.motion_a.pose(0.0)));
-    const fcl::CollisionObjectd b(box(pair.b), transform(pair.motion_b.pose(0.0)));
-    fcl::ContinuousCollisionResultd result;
-    fcl::continuousCollide(&a, transform(pair.motion_a.pose(1.0)), &b,
-                           transform(pair.motion_b.pose(1.0)), request, result);
-    count += result.is_collide ? 1 : 0;
-  }
-  return count;
+    for (std::size_t i = first; i < last; ++i) {
+      const BoxPair& pair = pairs[i];
+      const fcl::Boxd a = box(pair.a);
+      const fcl::Boxd b = box(pair.b);
+      fcl::ContinuousCollisionResultd result;
+      fcl::continuousCollide(&a, transform(pair.start_a), transform(pair.end_a), &b,
+                             transform(pair.start_b), transform(pair.end_b), request, result);
+      answers[i] = result.is_collide ? result.time_of_contact : never;
+    }
+  };
 }
 
 }  // namespace

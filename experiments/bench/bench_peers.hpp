@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ccd/oriented_box.hpp"
 #include "core/motion.hpp"
 #include "core/shape.hpp"
 
@@ -10,17 +11,26 @@
 
 namespace kairos::experiments {
 
-/// Two boxes and how they move in a window of 1 s.
-struct BenchPair {
-  Shape a, b;
-  Motion motion_a, motion_b;
+/// Two boxes and how they move in a window of 1 s, with the poses at its end that others want. Kept
+/// small, so that many distinct pairs are no test of the memory.
+struct BoxPair {
+  Box a, b;
+  Pose start_a, start_b;
+  Pose end_a, end_b;
+  Twist twist_a, twist_b;
 };
 
-/// A measured peer: a library that was found when kairos was built. Never needed to build.
+/// Answers the pairs [first, last): the time of impact (s), infinity for none; overlap: 0.
+using Contest =
+    std::function<void(std::size_t first, std::size_t last, std::vector<double>& answers)>;
+
+/// A measured peer: a library that was found when kairos was built. Never needed to build. Each
+/// function prepares what the library wants to have at hand, outside the time that is measured; it
+/// is empty where the library has no such query.
 struct PeerQuery {
   std::string name;
-  std::function<std::int64_t(const std::vector<BenchPair>&)> overlaps;  ///< counts; may be empty
-  std::function<std::int64_t(const std::vector<BenchPair>&)> impacts;   ///< counts; may be empty
+  std::function<Contest(const std::vector<BoxPair>&)> overlaps;
+  std::function<Contest(const std::vector<BoxPair>&)> impacts;
 };
 
 /// FCL, if it was found.

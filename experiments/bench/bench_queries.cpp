@@ -1,60 +1,97 @@
+#include "ccd/relative_boxes.hpp"
+#include "ccd/swept_box.hpp"
 #include "core/random.hpp"
 #include "experiments/bench/bench.hpp"
-#include "experiments/bench/bench_peers.hpp"
+#include "experiments/bench/chunk_race.hpp"
 #include "experiments/registry.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
 namespace kairos::experiments {
 namespace {
 
-constexpr std::size_t overlap_pairs = std::size_t{1} << 18;  // more than a branch predictor learns
-constexpr std::size_t impact_pairs = std::size_t{1} << 13;
 constexpr std::uint64_t seed = 20260108;
+constexpr double never = std::numeric_limits<double>::infinity();
+constexpr double fcl_accuracy = 1e-4;  ///< m, and s
 
-/// Boxes near each other: about half of the pairs overlap at `spread` 1.
-std::vector<BenchPair> random_pairs(std::size_t count, double spread, double turn) {
-  std::vector<BenchPair> pairs;
-  pairs.reserve(count);
+/// Boxes of 0.2 to 1 m at a distance around `spread` (at 1.4 about half of them overlap) that fly
+/// past or into each other within 1 s, turning by up to `turn` rad each.
+std::vector<BoxPair> random_pairs(std::size_t count, double spread, double turn) {
+  std::vector<BoxPair> pairs(count);
   for (std::size_t i = 0; i < count; ++i) {
     Random random(seed, i);
     const auto box = [&random] {
-      return Box{{random.uniform(0.2, 1.0), random.uniform(0.2, 1.0), random.uniform(0.2, 1.0)}};
+      const double x = random.uniform(0.2, 1.0);
+      const double y = random.uniform(0.2, 1.0);
+      return Box{{x, y, random.uniform(0.2, 1.0)}};
     };
-    const auto motion = [&](const Vector3& from, const Vector3& velocity) {
-      const Pose pose{from, random.orientation()};
-      const Twist twist{velocity, turn * random.uniform() * random.direction()};
-      return Motion::ballistic({}, 1.0, pose, twist, Vector3::Zero());
+    const auto spin = [&] {
+      const double rate = turn * random.uniform();
+      return Vector3(rate * random.direction());
     };
-    const Box a = box();
-    const Box b = box();
-    const Vector3 offset = spread * random.uniform(0.6, 1.4) * random.direction();
-    // Towards the first, a little beside it.
-    const Vector3 velocity = -1.5 * offset + 0.5 * random.direction();
-    const Motion motion_a = motion(Vector3::Zero(), Vector3::Zero());
-    const Motion motion_b = motion(offset, velocity);
-    pairs.push_back({a, b, motion_a, motion_b});
+    BoxPair& pair = pairs[i];
+    pair.a = box();
+    pair.b = box();
+    pair.start_a = {Vector3::Zero(), random.orientation()};
+    const double distance = spread * random.uniform(0.6, 1.4);
+    pair.start_b.position = distance * random.direction();
+    pair.start_b.orientation = random.orientation();
+    pair.twist_a = {Vector3::Zero(), spin()};
+    // Towards the first, or beside it.
+    const Vector3 velocity = -1.5 * pair.start_b.position + 2.0 * random.direction();
+    pair.twist_b = {velocity, spin()};
+    const auto end = [](const Pose& start, const Twist& twist) {
+      return Pose{start.position + twist.linear, kairos::rotate(twist.angular, start.orientation)};
+    };
+    pair.end_a = end(pair.start_a, pair.twist_a);
+    pair.end_b = end(pair.start_b, pair.twist_b);
   }
   return pairs;
 }
 
-std::int64_t count_overlaps(const ContactDetector& detector, const std::vector<BenchPair>& pairs) {
-  std::int64_t count = 0;
-  for (const BenchPair& pair : pairs) {
-    count +=
-        detector.overlaps(pair.a, pair.motion_a.pose(0.0), pair.b, pair.motion_b.pose(0.0)) ? 1 : 0;
+Contest sat_overlaps(const std::vector<BoxPair>& pairs) {
+  std::vector<std::pair<ccd::OrientedBox, ccd::OrientedBox>> boxes;
+  boxes.reserve(pairs.size());
+  const auto box = [](const Box& shape, const Pose& pose) {
+    return ccd::OrientedBox{pose.position, pose.orientation.toRotationMatrix(), shape.half_extents};
+  };
+  for (const BoxPair& pair : pairs) {
+    boxes.emplace_back(box(pair.a, pair.start_a), box(pair.b, pair.start_b));
   }
-  return count;
+  return [boxes = std::move(boxes)](std::size_t first, std::size_t last,
+                                    std::vector<double>& answers) {
+    for (std::size_t i = first; i < last; ++i) {
+      answers[i] =
+          ccd::classify(boxes[i].first, boxes[i].second) == ccd::Verdict::separated ? never : 0.0;
+    }
+  };
 }
 
-std::int64_t count_impacts(const ContactDetector& detector, const std::vector<BenchPair>& pairs) {
-  std::int64_t count = 0;
-  for (const BenchPair& pair : pairs) {
-    const TimeOfImpact toi =
-        detector.time_of_impact({pair.a, pair.motion_a}, {pair.b, pair.motion_b}, {{}, 1.0}, 0.0);
-    count += toi.status != ToiStatus::separated ? 1 : 0;  // at the start already, too
-  }
-  return count;
+double time_of(const TimeOfImpact& toi) {
+  return toi.status == ToiStatus::separated ? never : toi.t_lo;
+}
+
+/// Motions are made from the pairs within the time that is measured, as the peers make theirs.
+Contest impacts(const std::vector<BoxPair>& pairs, const std::string& name, double tolerance) {
+  return [&pairs, detector = find_detector(name), tolerance](std::size_t first, std::size_t last,
+                                                             std::vector<double>& answers) {
+    for (std::size_t i = first; i < last; ++i) {
+      const BoxPair& pair = pairs[i];
+      const Shape a = pair.a;
+      const Shape b = pair.b;
+      const Motion motion_a =
+          Motion::ballistic({}, 1.0, pair.start_a, pair.twist_a, Vector3::Zero());
+      const Motion motion_b =
+          Motion::ballistic({}, 1.0, pair.start_b, pair.twist_b, Vector3::Zero());
+      answers[i] =
+          time_of(detector->time_of_impact({a, motion_a}, {b, motion_b}, {{}, 1.0}, tolerance));
+    }
+  };
 }
 
 std::vector<PeerQuery> all_peers() {
@@ -64,61 +101,184 @@ std::vector<PeerQuery> all_peers() {
   return peers;
 }
 
-/// A race over pairs; what each counted is told, so that a fast wrong answer shows.
-class QueryRace {
- public:
-  explicit QueryRace(std::vector<BenchPair> pairs) : pairs_(std::move(pairs)) {}
-  void add(const std::string& name,
-           const std::function<std::int64_t(const std::vector<BenchPair>&)>& work) {
-    const std::size_t i = found_.size();
-    found_.push_back(0);
-    contenders_.push_back({name, [this, i, work] {
-                             found_[i] = work(pairs_);
-                             return static_cast<std::int64_t>(pairs_.size());
-                           }});
-  }
-  void run(const std::string& title, int rounds) {
-    print_race(title, "query", race(contenders_, rounds));
-    fmt::print("  found: {}\n", fmt::join(found_, ", "));
-  }
-
- private:
-  std::vector<BenchPair> pairs_;
-  std::vector<std::int64_t> found_;
-  std::vector<Contender> contenders_;
+/// What a racer's answers are worth, by the proven ones.
+struct Judgement {
+  std::size_t missed = 0;     ///< no impact, where there is one
+  std::size_t late = 0;       ///< by more than `fcl_accuracy`
+  std::size_t invented = 0;   ///< an impact, where there is none
+  double median_error = 0.0;  ///< of the times of those that both found, s
 };
+
+Judgement judge(const std::vector<double>& answers, const std::vector<double>& truth) {
+  Judgement judgement;
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (truth[i] == never || answers[i] == never) {
+      judgement.missed += truth[i] < answers[i] ? 1 : 0;
+      judgement.invented += answers[i] < truth[i] ? 1 : 0;
+      continue;
+    }
+    judgement.late += answers[i] > truth[i] + fcl_accuracy ? 1 : 0;
+    errors.push_back(std::abs(answers[i] - truth[i]));
+  }
+  if (!errors.empty()) {
+    const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
+    std::nth_element(errors.begin(), middle, errors.end());
+    judgement.median_error = *middle;
+  }
+  return judgement;
+}
+
+/// Runs a race, prints it against the answers of its first racer, which are proven, and returns the
+/// results. `than`: whose time is the measure of the last column; none if it does not run.
+std::vector<RaceResult> tell(const std::string& title, const std::vector<Racer>& racers,
+                             std::size_t count, int rounds, const std::string& than) {
+  const std::vector<RaceResult> results = race_in_chunks(racers, count, rounds);
+  const auto measure = std::find_if(results.begin(), results.end(),
+                                    [&](const RaceResult& r) { return r.name == than; });
+  fmt::print("{}\n  {:<44}{:>12}{:>10}{:>8}{:>10}{:>14}{:>10}\n", title, "", "ns a query", "missed",
+             "late", "invented", "median error", "ratio");
+  for (const RaceResult& result : results) {
+    const Judgement verdict = judge(result.answers, results.front().answers);
+    fmt::print("  {:<44}{:>12.1f}{:>10}{:>8}{:>10}{:>14.1e}{:>10}\n", result.name,
+               result.nanoseconds, verdict.missed, verdict.late, verdict.invented,
+               verdict.median_error,
+               measure == results.end()
+                   ? std::string()
+                   : fmt::format("{:.3f}", result.nanoseconds / measure->nanoseconds));
+  }
+  return results;
+}
+
+/// The times beside what they are to stay below.
+struct Bar {
+  std::string what;
+  double value;
+  double at_most;
+};
+
+double ratio(const std::vector<RaceResult>& results, const std::string& name,
+             const std::string& than) {
+  double time[2] = {};
+  for (const RaceResult& result : results) {
+    time[0] = result.name == name ? result.nanoseconds : time[0];
+    time[1] = result.name == than ? result.nanoseconds : time[1];
+  }
+  return time[0] / time[1];
+}
+
+const char* const fcl_overlap = "FCL: OBB::overlap";
+const char* const fcl_advancement = "FCL: conservative advancement, libccd";
+
+void race_overlaps(std::size_t count, int rounds, std::vector<Bar>& bars) {
+  const std::vector<BoxPair> pairs = random_pairs(count, 1.4, 0.0);
+  std::vector<Racer> racers{{"sat, proven", sat_overlaps(pairs)}};
+  for (const PeerQuery& peer : all_peers()) {
+    if (peer.overlaps) {
+      racers.push_back({peer.name, peer.overlaps(pairs)});
+    }
+  }
+  const auto results = tell(fmt::format("Do two boxes overlap? {} distinct pairs", count), racers,
+                            count, rounds, fcl_overlap);
+  bars.push_back({"sat / FCL OBB::overlap", ratio(results, "sat, proven", fcl_overlap), 0.5});
+}
+
+void race_impacts(std::size_t count, int rounds, double turn, std::vector<Bar>& bars) {
+  const std::vector<BoxPair> pairs = random_pairs(count, 3.0, turn);
+  const std::string at_1e4 = "conservative-advancement at 1e-4 m";
+  std::vector<Racer> racers{{"certified", impacts(pairs, "certified", 0.0)},
+                            {at_1e4, impacts(pairs, "conservative-advancement", fcl_accuracy)},
+                            {"bisection", impacts(pairs, "bisection", 0.0)}};
+  for (const PeerQuery& peer : all_peers()) {
+    if (peer.impacts) {
+      racers.push_back({peer.name, peer.impacts(pairs)});
+    }
+  }
+  const double degrees = std::round(turn * 57.29577951308232);
+  const auto results = tell(
+      fmt::format("When do two boxes meet? {} distinct pairs that turn by up to {:.0f} degrees",
+                  count, degrees),
+      racers, count, rounds, fcl_advancement);
+  const auto name = [&](const char* what) {
+    return fmt::format("{} / FCL advancement, {:.0f} degrees", what, degrees);
+  };
+  bars.push_back(
+      {name("conservative-advancement at 1e-4"), ratio(results, at_1e4, fcl_advancement), 0.1});
+  bars.push_back({name("certified"), ratio(results, "certified", fcl_advancement), 0.2});
+}
+
+/// A cloud of balls under gravity, and every pair of them.
+struct Cloud {
+  std::vector<Shape> balls;
+  std::vector<Motion> motions;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+
+  explicit Cloud(std::size_t count) {
+    const auto size =
+        static_cast<std::uint32_t>(std::ceil(std::sqrt(2.0 * static_cast<double>(count)))) + 1;
+    for (std::uint32_t i = 0; i < size; ++i) {
+      Random random(seed + 1, i);
+      balls.emplace_back(Sphere{random.uniform(0.05, 0.2)});
+      const Pose at{{random.uniform(0.0, 4.0), random.uniform(0.0, 4.0), random.uniform(0.0, 4.0)},
+                    Quaternion::Identity()};
+      const double speed = random.uniform(0.0, 8.0);
+      const Vector3 velocity = speed * random.direction();
+      motions.push_back(
+          Motion::ballistic({}, 1.0, at, {velocity, Vector3::Zero()}, {0.0, -9.8, 0.0}));
+      for (std::uint32_t j = 0; j < i && pairs.size() < count; ++j) {
+        pairs.emplace_back(j, i);
+      }
+    }
+  }
+};
+
+void race_balls(std::size_t count, int rounds, std::vector<Bar>& bars) {
+  const Cloud cloud(count);
+  const Contest impact = [&cloud, detector = find_detector("certified")](
+                             std::size_t first, std::size_t last, std::vector<double>& answers) {
+    for (std::size_t k = first; k < last; ++k) {
+      const auto [i, j] = cloud.pairs[k];
+      answers[k] = time_of(detector->time_of_impact(
+          {cloud.balls[i], cloud.motions[i]}, {cloud.balls[j], cloud.motions[j]}, {{}, 1.0}, 0.0));
+    }
+  };
+  const std::string title = "When do two balls under gravity meet?";
+  const auto results =
+      tell(fmt::format("{} {} distinct pairs of {}", title, count, cloud.balls.size()),
+           {{"certified", impact}}, count, rounds, "");
+  bars.push_back({"certified, balls under gravity (ns)", results.front().nanoseconds, 60.0});
+
+  // The same for a shorter window, in which nearly all stay apart: first their swept boxes.
+  const double window = 1.0 / 60.0;
+  std::vector<Aabb> boxes;
+  for (std::size_t i = 0; i < cloud.balls.size(); ++i) {
+    boxes.push_back(ccd::swept_aabb(cloud.balls[i], cloud.motions[i], 0.0, window));
+  }
+  const Contest reject = [&](std::size_t first, std::size_t last, std::vector<double>& answers) {
+    for (std::size_t k = first; k < last; ++k) {
+      const auto [i, j] = cloud.pairs[k];
+      answers[k] = boxes[i].overlaps(boxes[j]) ? 0.0 : never;
+    }
+  };
+  const auto rejected =
+      tell("Could they meet within 1/60 s?", {{"swept boxes", reject}}, count, rounds, "");
+  bars.push_back({"rejection by swept boxes (ns)", rejected.front().nanoseconds, 10.0});
+}
 
 }  // namespace
 
-void bench_queries(int rounds) {
-  QueryRace overlaps(random_pairs(overlap_pairs, 1.4, 0.0));
-  for (const char* name : {"sat", "certified"}) {
-    overlaps.add(std::string(name) + ": overlaps", [detector = find_detector(name)](const auto& p) {
-      return count_overlaps(*detector, p);
-    });
-  }
-  for (const PeerQuery& peer : all_peers()) {
-    if (peer.overlaps) {
-      overlaps.add(peer.name, peer.overlaps);
-    }
-  }
-  overlaps.run(fmt::format("Do two boxes overlap? {} distinct pairs", overlap_pairs), rounds);
-
-  for (const double turn : {0.7, 3.0}) {
-    QueryRace impacts(random_pairs(impact_pairs, 3.0, turn));
-    for (const char* name : {"certified", "conservative-advancement", "bisection"}) {
-      impacts.add(name, [detector = find_detector(name)](const auto& p) {
-        return count_impacts(*detector, p);
-      });
-    }
-    for (const PeerQuery& peer : all_peers()) {
-      if (peer.impacts) {
-        impacts.add(peer.name, peer.impacts);
-      }
-    }
-    impacts.run(fmt::format("When do two boxes meet? {} pairs that turn by up to {:.0f} degrees",
-                            impact_pairs, turn * 57.29577951308232),
-                rounds);
+void bench_queries(std::size_t pairs, int rounds) {
+  std::vector<Bar> bars;
+  race_overlaps(pairs, rounds, bars);
+  race_impacts(pairs, rounds, 0.7, bars);
+  race_impacts(pairs, rounds, 3.0, bars);
+  race_balls(pairs, rounds, bars);
+  fmt::print("Measured against what is asked for\n  {:<60}{:>12}{:>12}\n", "", "measured",
+             "at most");
+  for (const Bar& bar : bars) {
+    fmt::print("  {:<60}{:>12}{:>12}\n", bar.what,
+               std::isfinite(bar.value) ? fmt::format("{:.3g}", bar.value) : "no peer",
+               bar.at_most);
   }
 }
 

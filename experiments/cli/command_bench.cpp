@@ -11,7 +11,8 @@ namespace kairos::experiments {
 void add_bench_command(CLI::App& app) {
   struct BenchCommand {
     std::string name;
-    int rounds = 5;
+    int rounds = 3;
+    std::size_t pairs = std::size_t{1} << 18;  // more than a branch predictor learns
   };
   const auto options = std::make_shared<BenchCommand>();
   CLI::App* bench = app.add_subcommand(
@@ -21,12 +22,15 @@ void add_bench_command(CLI::App& app) {
   bench->add_option("--rounds", options->rounds, "how often each is timed")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  bench->add_option("--pairs", options->pairs, "ccd: how many distinct pairs")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 22))
+      ->capture_default_str();
   bench->callback([options] {
     if (options->name != "ccd") {
       bench_stepping(options->rounds);
     }
     if (options->name != "bounce") {
-      bench_queries(options->rounds);
+      bench_queries(options->pairs, options->rounds);
     }
   });
 }
