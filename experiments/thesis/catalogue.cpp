@@ -21,6 +21,7 @@ ThesisFigure class_diagram();
 ThesisFigure sinking_ball();
 ThesisFigure swept_box_of_geometric();
 ThesisFigure improved_flow_of_events();
+ThesisFigure gaining_energy();
 
 }  // namespace thesis
 
@@ -38,6 +39,7 @@ std::span<const ThesisFigure> thesis_figures() {
       thesis::sinking_ball(),
       thesis::swept_box_of_geometric(),
       thesis::improved_flow_of_events(),
+      thesis::gaining_energy(),
   };
   return figures;
 }
