@@ -22,6 +22,7 @@ ThesisFigure sinking_ball();
 ThesisFigure swept_box_of_geometric();
 ThesisFigure improved_flow_of_events();
 ThesisFigure gaining_energy();
+ThesisFigure errata_table();
 
 }  // namespace thesis
 
@@ -40,6 +41,7 @@ std::span<const ThesisFigure> thesis_figures() {
       thesis::swept_box_of_geometric(),
       thesis::improved_flow_of_events(),
       thesis::gaining_energy(),
+      thesis::errata_table(),
   };
   return figures;
 }

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <stdexcept>
 
 namespace kairos::experiments {
@@ -42,6 +41,23 @@ void FigureData::text(std::string_view name, std::string_view value, std::string
   add_value(name, std::string(value), "", std::string(value), meaning);
 }
 
+const std::vector<Cell>& FigureData::row(std::string_view name) const {
+  for (const auto& cells : values_.rows) {
+    if (std::get<std::string>(cells[0]) == name) {
+      return cells;
+    }
+  }
+  throw std::out_of_range(fmt::format("no value '{}' to quote", name));
+}
+
+double FigureData::number(std::string_view name) const {
+  const auto* x = std::get_if<double>(&row(name)[1]);
+  if (x == nullptr) {
+    throw std::out_of_range(fmt::format("the value '{}' is no number", name));
+  }
+  return *x;
+}
+
 std::string FigureData::filled(std::string_view text) const {
   std::string out;
   for (std::size_t at = 0; at < text.size();) {
@@ -51,13 +67,7 @@ std::string FigureData::filled(std::string_view text) const {
       return out.append(text.substr(at));
     }
     out.append(text.substr(at, open - at));
-    const std::string name(text.substr(open + 1, close - open - 1));
-    const auto row = std::find_if(values_.rows.begin(), values_.rows.end(),
-                                  [&](const auto& cells) { return to_text(cells[0]) == name; });
-    if (row == values_.rows.end()) {
-      throw std::out_of_range(fmt::format("no value '{}' to quote in: {}", name, text));
-    }
-    out += to_text((*row)[3]);
+    out += to_text(row(text.substr(open + 1, close - open - 1))[3]);
     at = close + 1;
   }
   return out;

@@ -39,6 +39,8 @@ class FigureData {
   void count(std::string_view name, std::int64_t n, std::string_view meaning);
   void text(std::string_view name, std::string_view value, std::string_view meaning);
 
+  /// A value by its name. Throws `std::out_of_range` where there is no such number.
+  [[nodiscard]] double number(std::string_view name) const;
   /// `text` with each `{name}` replaced by that value and its unit, as quoted. Throws
   /// `std::out_of_range` where there is no such value.
   [[nodiscard]] std::string filled(std::string_view text) const;
@@ -51,6 +53,7 @@ class FigureData {
     Table table;
   };
 
+  [[nodiscard]] const std::vector<Cell>& row(std::string_view name) const;
   void add_value(std::string_view name, Cell value, std::string_view unit, std::string quoted,
                  std::string_view meaning);
 

@@ -1,0 +1,249 @@
+#include "core/impact_law.hpp"
+#include "core/random.hpp"
+#include "experiments/registry.hpp"
+#include "experiments/thesis/errata.hpp"
+#include "experiments/thesis/errata_runs.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+// Errata about when and how contacts are handled: predictions 2, 4, 6, 7, 8 and 12.
+
+namespace kairos::experiments::thesis {
+namespace {
+
+/// Start of the k-th of n drops whose last frame before the bounce falls everywhere, with equal
+/// weight: after m frames the thesis' ball has fallen G h^2 (m-1)(m-2)/2; here m = 59 to 60.
+Scene drop_at_phase(int k, int n) {
+  const double height = 0.5 + G * frame * frame * 58.0 * (57.0 / 2.0 + (k + 0.5) / n);
+  return shipped("bounce", {{"body.ball.position", fmt::format("[0, {}, 0]", height)}});
+}
+
+/// Fraction of drops in which a ball that was reflected is reflected again, back inwards.
+double turned_fraction(double jitter, int n) {
+  RunChoice choice = thesis_choice(frame, 1.25);
+  double turned = 0.0;
+  for (int k = 0; k < n; ++k) {
+    choice.frames = JitteredFrames{frame, jitter, 0.0, 10.0, seed + static_cast<std::uint64_t>(k)};
+    const Measured run = measured_run(drop_at_phase(k, n), choice, "separating_impacts");
+    turned += std::min(1.0, run.value);
+  }
+  return turned / n;
+}
+
+/// E[max(0, 1 - h2/h1)] for two frame times uniform in 1 +- j, by the midpoint rule.
+double expected_turns(double jitter) {
+  constexpr int n = 400;
+  double sum = 0.0;
+  for (int i = 0; i < n; ++i) {
+    for (int k = 0; k < n; ++k) {
+      const double h1 = 1.0 + jitter * (2.0 * (i + 0.5) / n - 1.0);
+      const double h2 = 1.0 + jitter * (2.0 * (k + 0.5) / n - 1.0);
+      sum += std::max(0.0, 1.0 - h2 / h1);
+    }
+  }
+  return sum / (n * n);
+}
+
+/// The thesis' reflection with restitution: no approach test, the normal speed scaled by e.
+class LossyReflection : public ImpactLaw {
+ public:
+  explicit LossyReflection(double e) : e_(e) {}
+  [[nodiscard]] LawInfo info() const override { return {"lossy-reflection", false, ""}; }
+  ImpactEnergy apply(const Contact& /*contact*/, ImpactBody a, ImpactBody b) const override {
+    (a.inertia.mass > 0.0 ? a : b).state.twist.linear.y() *= -e_;
+    return {};
+  }
+
+ private:
+  double e_;
+};
+
+double turned_with_restitution(double e, int n) {
+  double turned = 0.0;
+  for (int k = 0; k < n; ++k) {
+    const Model model(drop_at_phase(k, n));
+    const Method method{.stepper = find_integrator("thesis-euler"),
+                        .detector = find_detector("sat"),
+                        .law = std::make_shared<LossyReflection>(e),
+                        .broad_phase = find_broad_phase(model.broad_phase()),
+                        .swept_bounds = swept_bounds()};
+    MetricRecorder recorder({{"separating_impacts"}, ""});
+    SchemeOptions options;
+    options.frames = FixedFrames{frame};
+    options.duration = 1.25;
+    const RunResult result = find_scheme("original")->run(model, method, options, recorder);
+    turned += std::min(1.0, recorder.value("separating_impacts", result).value_or(0.0));
+  }
+  return turned / n;
+}
+
+constexpr double wall = 0.02;    // m, of scene bullet
+constexpr double radius = 0.02;  // m
+
+/// Fraction of stratified phases of the frame at which the bullet goes through the wall; exact
+/// within 1/n for any interval of phases.
+double tunnelled_fraction(const MethodChoice& method, bool equal_substeps, double speed, int n) {
+  RunChoice choice;
+  choice.method = method;
+  choice.equal_substeps = equal_substeps;
+  choice.threshold = 0.5 * (wall + 2.0 * radius);
+  choice.frames = FixedFrames{frame};
+  choice.duration = 2.0 / speed + 4.0 * frame;
+  const double shift = Random(seed, static_cast<std::uint64_t>(speed)).uniform();
+  double count = 0.0;
+  for (int k = 0; k < n; ++k) {
+    const double phase = (k + shift) / n;
+    const Scene scene = shipped(
+        "bullet",
+        {{"body.bullet.velocity", fmt::format("[{}, 0, 0]", speed)},
+         {"body.bullet.position", fmt::format("[{}, 0, 0]", -1.0 - phase * speed * frame)}});
+    count += measured_run(scene, choice, "tunnelled").value;
+  }
+  return count / n;
+}
+
+/// Two balls of equal mass, the second hit with the line of centres at `theta` off the velocity of
+/// the first; `shared`: both move, with opposite velocities (the centre-of-mass frame).
+Scene two_balls(double theta, bool shared) {
+  const double reach = 0.2001;
+  return parse_scene(
+      fmt::format("name = \"two\"\nsummary = \"\"\nduration = 0.04\nframe = 0.01\nG = 0.0\n"
+                  "[[body]]\nname = \"a\"\nentity = \"ball\"\nradius = 0.1\nmass = 1.0\n"
+                  "position = [{}, {}, 0]\nvelocity = [0.1, 0, 0]\n"
+                  "[[body]]\nname = \"b\"\nentity = \"ball\"\nradius = 0.1\nmass = 1.0\n"
+                  "velocity = [{}, 0, 0]\n",
+                  -reach * std::cos(theta), -reach * std::sin(theta), shared ? -0.1 : 0.0),
+      "two-balls.toml");
+}
+
+/// Angle between what the thesis makes of the second ball's velocity and what is right.
+double direction_error(double theta, bool shared) {
+  RunChoice choice = thesis_choice(0.01, 0.04);
+  const Simulation literal = simulate(two_balls(theta, shared), choice);
+  choice.method = {"event-driven", "auto", "certified", "newton"};
+  const Simulation right = simulate(two_balls(theta, shared), choice);
+  const Vector3 v = literal.trajectory.events().at(0).after_b.twist.linear;
+  const Vector3 w = right.trajectory.events().at(0).after_b.twist.linear;
+  return std::atan2(v.cross(w).norm(), v.dot(w));
+}
+
+}  // namespace
+
+std::vector<Check> jiggle(Size size) {
+  const int n = size == Size::full ? 6000 : 1500;
+  std::vector<Check> checks;
+  for (const double jitter : {0.0, 0.1, 0.3}) {
+    const double expected = expected_turns(jitter);
+    checks.push_back({fmt::format("fraction turned back in, frame time ±{:g} %", 100.0 * jitter),
+                      "", expected, turned_fraction(jitter, n), Agreement::equal,
+                      4.0 * std::sqrt(expected * (1.0 - expected) / n), "4 standard deviations"});
+  }
+  for (const double e : {0.9, 0.5}) {
+    // Gravity between two frames changes the speed by G h / v = 1.7 %.
+    checks.push_back({fmt::format("fraction turned back in, restitution {:g}", e), "", 1.0 - e,
+                      turned_with_restitution(e, n / 4), Agreement::equal, 0.02,
+                      "physical: gravity in one frame"});
+  }
+  return checks;
+}
+
+std::vector<Check> tunnelling(Size size) {
+  const int n = size == Size::full ? 512 : 128;
+  std::vector<Check> checks;
+  for (const double speed : {3.0, 6.0, 20.0, 200.0}) {
+    checks.push_back({fmt::format("fraction through the wall at {:g} m/s", speed), "",
+                      std::max(0.0, 1.0 - (wall + 2.0 * radius) / (speed * frame)),
+                      tunnelled_fraction(MethodChoice::thesis(), false, speed, n), Agreement::equal,
+                      1.0 / n, "one phase"});
+  }
+  checks.push_back({"the same at 200 m/s, event-driven", "", 0.0,
+                    tunnelled_fraction({}, false, 200.0, n), Agreement::equal, 0.0, "exact"});
+  return checks;
+}
+
+std::vector<Check> literal_substeps(Size size) {
+  const int n = size == Size::full ? 2048 : 512;
+  MethodChoice literal = MethodChoice::thesis();
+  literal.scheme = "substepped";
+  MethodChoice bisected = literal;
+  bisected.scheme = "bisected";
+  bisected.detector = "bisection";
+  return {{"fraction through the wall at 20 m/s, fig. 15 literally", "", 0.09,
+           tunnelled_fraction(literal, false, 20.0, n), Agreement::equal, 0.02,
+           "the prediction's own precision"},
+          {"the same with equal substeps", "", 0.0, tunnelled_fraction(literal, true, 20.0, n / 8),
+           Agreement::equal, 0.0, "exact"},
+          {"the same with bisection", "", 0.0, tunnelled_fraction(bisected, false, 20.0, n / 8),
+           Agreement::equal, 0.0, "exact"}};
+}
+
+std::vector<Check> swallowing_conveyor(Size) {
+  const auto run = [](double mass) {
+    return simulate(shipped("conveyor", {{"body.ball.mass", fmt::format("{}", mass)}}),
+                    thesis_choice(frame, 1.5));
+  };
+  const auto outwards = [&](double mass) {  // after the first collision
+    return run(mass).trajectory.events().at(0).after_b.twist.linear.y() > 0.0;
+  };
+  double light = 1.0;
+  double heavy = 20.0;
+  while (heavy - light > 1e-6) {
+    const double middle = 0.5 * (light + heavy);
+    (outwards(middle) ? heavy : light) = middle;
+  }
+  const auto lowest = [&](double mass) {
+    const Simulation simulation = run(mass);
+    double y = 1.0;
+    for (std::size_t n = 0; n < simulation.trajectory.frame_times().size(); ++n) {
+      y = std::min(y, simulation.trajectory.frame_state(n)[1].pose.position.y());
+    }
+    return y;
+  };
+  return {
+      {"mass from which a ball leaves the first collision outwards", "kg", 10.0, heavy,
+       Agreement::equal, 1e-6, "width of the bisection"},
+      {"lowest centre of a ball of 1 kg (the belt's surface is at 0)", "m", -0.1, lowest(1.0),
+       Agreement::at_most, 0.0, ""},
+      {"lowest centre of a ball of 20 kg", "m", 0.0, lowest(20.0), Agreement::at_least, 0.0, ""}};
+}
+
+std::vector<Check> whole_vector_exchange(Size) {
+  std::vector<Check> checks;
+  for (const double theta : {0.3, 0.7}) {
+    // Physical: the line of centres turns by (distance flown in the overlap)/(2r) until they meet.
+    checks.push_back({fmt::format("error of direction, target at rest, θ = {:g}", theta), "rad",
+                      theta, direction_error(theta, false), Agreement::equal, 0.01,
+                      "physical: one frame of flight"});
+    checks.push_back({fmt::format("error of direction, centre-of-mass frame, θ = {:g}", theta),
+                      "rad", 2.0 * theta, direction_error(theta, true), Agreement::equal, 0.02,
+                      "physical: one frame of flight"});
+  }
+  return checks;
+}
+
+std::vector<Check> one_collision_a_frame(Size) {
+  // Two balls reach the same floor in the same frame; the floor is created last.
+  const Scene scene = parse_scene(
+      "name = \"guard\"\nsummary = \"\"\nduration = 1\nframe = \"1/60\"\nG = 0.0\n"
+      "[[body]]\nname = \"a\"\nentity = \"ball\"\nradius = 0.1\nmass = 1.0\n"
+      "position = [-1, 0.15, 0]\nvelocity = [0, -6, 0]\n"
+      "[[body]]\nname = \"b\"\nentity = \"ball\"\nradius = 0.1\nmass = 1.0\n"
+      "position = [1, 0.15, 0]\nvelocity = [0, -6, 0]\n"
+      "[[body]]\nname = \"floor\"\nentity = \"wall\"\nshape = \"half-space\"\n",
+      "two-balls-one-floor.toml");
+  const auto later = [&](const RunChoice& choice) {
+    const Simulation run = simulate(scene, choice);
+    const auto& events = run.trajectory.events();
+    return (events.at(1).time - events.at(0).time) / frame;
+  };
+  RunChoice exact;
+  exact.duration = 0.5;
+  return {{"how much later the second ball is handled", "frames", 1.0,
+           later(thesis_choice(frame, 0.5)), Agreement::equal, 1e-9, "roundoff of times"},
+          {"the same, event-driven", "frames", 0.0, later(exact), Agreement::equal, 1e-9,
+           "roundoff of times"}};
+}
+
+}  // namespace kairos::experiments::thesis
