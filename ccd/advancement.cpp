@@ -364,24 +364,45 @@ void Advancement::nearest_points() {
   answer_.witness_b = answer_.witness_a + n * (witness_.gap + motion_.error_reach());
 }
 
-double coordinate_size(const MovingShape& shape, const Window& window) {
-  const Polynomial<3>& p = shape.motion.position;
-  const double s = std::abs(window.start - shape.motion.start) +
-                   (std::isfinite(window.duration) ? window.duration : 0.0);
+double local_end(const Motion& motion, const Window& window) {
+  return std::abs(window.start - motion.start) +
+         (std::isfinite(window.duration) ? window.duration : 0.0);
+}
+
+/// sum |c_k| s^k: no coordinate of the curve is larger up to s.
+double reached(const Polynomial<3>& p, double s) {
   double size = 0.0;
   for (int k = p.degree(); k >= 0; --k) {
     size = size * s + p[k].lpNorm<Eigen::Infinity>();
   }
-  const double radius = bounding_radius(shape.shape);
-  return size + (std::isfinite(radius) ? radius : 0.0);
+  return size;
+}
+
+double finite_radius(const Shape& shape) {
+  const double radius = bounding_radius(shape);
+  return std::isfinite(radius) ? radius : 0.0;
 }
 
 }  // namespace
 
 double default_tolerance(const MovingShape& a, const MovingShape& b, const Window& window) {
   const double extent = std::min(smallest_extent(a.shape), smallest_extent(b.shape));
-  // Roundoff: 64 u of the largest coordinates that the motions reach.
-  return 1e-9 * extent + 64.0 * u * (coordinate_size(a, window) + coordinate_size(b, window));
+  const double s_a = local_end(a.motion, window);
+  const double s_b = local_end(b.motion, window);
+  const double radii = finite_radius(a.shape) + finite_radius(b.shape);
+  const double coordinates = reached(a.motion.position, s_a) + reached(b.motion.position, s_b);
+  double apart = coordinates;
+  if (a.motion.start == b.motion.start) {  // seen from each other
+    Polynomial<3> d = b.motion.position;
+    d.resize(std::max(d.degree(), a.motion.position.degree()));
+    for (int k = 0; k <= a.motion.position.degree(); ++k) {
+      d[k] -= a.motion.position[k];
+    }
+    apart = std::min(apart, reached(d, s_a));
+  }
+  // Roundoff: 64 u of the largest coordinates that the motions reach, and 256 u of what is turned
+  // and projected, which is how far the bounds of a separation's rounding go.
+  return 1e-9 * extent + 64.0 * u * coordinates + 256.0 * u * (apart + radii);
 }
 
 TimeOfImpact advance_to_impact(const MovingShape& a, const MovingShape& b, const Window& window,

@@ -50,6 +50,17 @@ Quaternion turned_by(const Motion& motion, double rate, double s) {
   return Quaternion(cosine, k * w.x(), k * w.y(), k * w.z()) * Quaternion(c[0], c[1], c[2], c[3]);
 }
 
+/// Bound of the rounding of the rotation matrix of a quaternion polynomial at s: Horner's rule and
+/// a rounded s move Q by 3 n u sum |c_k| |s|^k; of that over |Q| an entry moves four times as much.
+double polynomial_rotation_error(const Motion& motion, double s) {
+  const Polynomial<4>& q = motion.quaternion;
+  double size = 0.0;
+  for (int k = q.degree(); k >= 0; --k) {
+    size = size * std::abs(s) + q[k].norm();
+  }
+  return (16.0 + 12.0 * q.degree() * (size / q(s).norm())) * u;
+}
+
 /// The rate of turn that the quaternion polynomial itself has (the motion's own polynomial for the
 /// angular velocity may be a better approximation of something else): w = 2 Im(Q' Q*) / |Q|^2.
 Vector3 rate_of_turn(const Motion& motion, double s) {
@@ -179,13 +190,7 @@ PairMotion::PairMotion(const MovingShape& a, const MovingShape& b, const Window&
       }
     } else {
       simple_ = false;
-      const int degree = motion.quaternion.degree();
-      double size = 0.0;
-      const double end = std::isfinite(duration_) ? std::abs(s) + duration_ : std::abs(s);
-      for (int k = degree; k >= 0; --k) {
-        size = size * end + motion.quaternion[k].norm();
-      }
-      rotation_error_ += (24.0 + 8.0 * degree) * u * std::max(1.0, size);
+      constant_rates_ = false;
     }
   }
 }
@@ -228,7 +233,15 @@ void PairMotion::evaluate(double t, Kinematics& k) const {
   }
   const double distance = k.d.lpNorm<1>();
   const double extents = half_a_.sum() + half_b_.sum();
-  const double rotation = rotation_error_ + rotation_error_rate_ * t;
+  double rotation = rotation_error_ + rotation_error_rate_ * t;
+  if (!constant_rates_) {
+    for (const bool second : {false, true}) {
+      const Motion& motion = second ? *motion_b_ : *motion_a_;
+      if ((second ? turns_b_ : turns_a_) && motion.rotation == RotationKind::polynomial) {
+        rotation += polynomial_rotation_error(motion, (second ? s_b_ : s_a_) + t);
+      }
+    }
+  }
   k.error += rotation * distance + (rotation + 16.0 * u) * extents;
   k.rate_error += 2.0 * rotation * k.v.lpNorm<1>() + 2.0 * (rotation + 16.0 * u) *
                                                          (k.w_a.lpNorm<1>() + k.w_b.lpNorm<1>()) *

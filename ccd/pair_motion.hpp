@@ -83,6 +83,7 @@ class PairMotion {
   bool turns_a_ = false;
   bool turns_b_ = false;
   bool simple_ = true;
+  bool constant_rates_ = true;  ///< of turning
   Polynomial<3> d_;
   Polynomial<3> curvature_;  ///< d'' / 2, degree > 2 only
   std::array<double, Polynomial<3>::max_degree + 1> position_error_{};  ///< coefficients in t

@@ -128,8 +128,16 @@ void SeparationFunction::along_edges() {
   const Vector3 a = k_.R_WA.col(witness_.edge_a);
   const Vector3 b = k_.R_WB.col(witness_.edge_b);
   const double sign = a.cross(b).dot(n) < 0.0 ? -1.0 : 1.0;
-  const Vector3 n_rate = sign * (k_.w_a.cross(a).cross(b) + a.cross(k_.w_b.cross(b)));
+  const Vector3 a_rate = k_.w_a.cross(a);
+  const Vector3 b_rate = k_.w_b.cross(b);
+  const Vector3 n_rate = sign * (a_rate.cross(b) + a.cross(b_rate));
   slope_ = n.dot(k_.v) + n_rate.dot(k_.d);
+  if (constant_rates()) {
+    const Vector3 half_n_second =
+        0.5 * (k_.w_a.cross(a_rate).cross(b) + a.cross(k_.w_b.cross(b_rate))) +
+        a_rate.cross(b_rate);
+    second_ = sign * half_n_second.dot(k_.d) + n_rate.dot(k_.v) + n.dot(k_.c);
+  }
   // An axis x of a moves at w_a x x, so that n . x changes at (n' + n x w_a) . x.
   const Vector3 g_a = n_rate + n.cross(k_.w_a);
   const Vector3 g_b = n_rate + n.cross(k_.w_b);
@@ -189,20 +197,17 @@ double SeparationFunction::curvature(double horizon) const {
   const double c = c_ + bend;
   const double speed = speed_ + 2.0 * c * horizon;
   const double distance = distance_ + (speed_ + c * horizon) * horizon;
-  if (witness_.frame == WitnessFrame::edges) {
-    const double w = turn_.w_a + turn_.w_b;
-    const double second_of_n = w * w + turn_.alpha_a + turn_.alpha_b;
-    return -0.5 * (second_of_n * distance + 2.0 * w * speed + 2.0 * c) - fixed_bend_;
-  }
+  const bool edges = witness_.frame == WitnessFrame::edges;
   const bool with_a = witness_.frame == WitnessFrame::a;
-  const double w = with_a ? turn_.w_a : turn_.w_b;
-  const double alpha = with_a ? turn_.alpha_a : turn_.alpha_b;
-  if (alpha > 0.0 || bend > 0.0) {
-    return -0.5 * ((w * w + alpha) * distance + 2.0 * w * speed + 2.0 * c) - fixed_bend_;
+  const double w = edges ? turn_.w_a + turn_.w_b : with_a ? turn_.w_a : turn_.w_b;
+  if (constant_rates()) {  // the second derivative is exact, and the third bounded
+    const double third = w * (6.0 * c + w * (3.0 * speed + w * distance));
+    return second_ - third * horizon / 6.0 - fixed_bend_;
   }
-  // Constant rate: the second derivative is exact, and the third bounded.
-  const double third = w * (6.0 * c + w * (3.0 * speed + w * distance));
-  return second_ - third * horizon / 6.0 - fixed_bend_;
+  const double alpha = edges    ? turn_.alpha_a + turn_.alpha_b
+                       : with_a ? turn_.alpha_a
+                                : turn_.alpha_b;
+  return -0.5 * ((w * w + alpha) * distance + 2.0 * w * speed + 2.0 * c) - fixed_bend_;
 }
 
 double SeparationFunction::rate() const { return (least_slope_ + k_.rate_error) / witness_.length; }

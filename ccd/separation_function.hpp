@@ -68,6 +68,13 @@ class SeparationFunction {
   [[nodiscard]] bool curvature_depends_on_horizon() const {
     return witness_.frame != WitnessFrame::world && witness_.frame != WitnessFrame::spheres;
   }
+  /// Does what the witness is fixed to turn at constant rates, while d is a parabola?
+  [[nodiscard]] bool constant_rates() const {
+    const bool with_a = witness_.frame == WitnessFrame::a || witness_.frame == WitnessFrame::edges;
+    const bool with_b = witness_.frame == WitnessFrame::b || witness_.frame == WitnessFrame::edges;
+    return turn_.bend == 0.0 && !(with_a && turn_.alpha_a > 0.0) &&
+           !(with_b && turn_.alpha_b > 0.0);
+  }
   /// The step that the quadratic on [0, reach] allows, at most `reach`.
   [[nodiscard]] double step_within(double reach) const;
 

@@ -106,14 +106,21 @@ Motion read_motion(Bytes& bytes, double scale, const Vector3& offset) {
   return motion;
 }
 
-/// False where the bytes are no query: two half-spaces, or a quaternion polynomial that passes zero
-/// within the window.
+/// A quaternion polynomial that comes near zero is no motion: its rounding has no bound.
+bool keeps_its_length(const Motion& motion) {
+  double least = 1.0;
+  for (int i = 0; i <= 64 && motion.rotation == RotationKind::polynomial; ++i) {
+    least = std::min(least, motion.quaternion(i / 64.0).norm());
+  }
+  return least > 0.25 && std::isfinite(motion.angular_speed_bound(0.0, 1.0));
+}
+
+/// False where the bytes are no query.
 bool decode_query(std::span<const std::uint8_t> data, Query& q) {
   Bytes bytes(data);
   static constexpr double scales[] = {1.0, 1e-9, 1e9, 1.0, 1e-3, 1.0, 1e3, 1.0};
   const double scale = scales[bytes.below(8)];
-  const Vector3 offset =
-      bytes.below(4) == 3 ? Vector3(1e6, -5e5, 2.5e5) : Vector3(Vector3::Zero());
+  const Vector3 offset = bytes.below(4) == 3 ? Vector3(1e6, -5e5, 2.5e5) : Vector3(Vector3::Zero());
   q.a = read_shape(bytes, scale);
   q.b = read_shape(bytes, scale);
   if (std::holds_alternative<HalfSpace>(q.a) && std::holds_alternative<HalfSpace>(q.b)) {
@@ -121,8 +128,7 @@ bool decode_query(std::span<const std::uint8_t> data, Query& q) {
   }
   q.motion_a = read_motion(bytes, scale, offset);
   q.motion_b = read_motion(bytes, scale, offset);
-  return std::isfinite(q.motion_a.angular_speed_bound(0.0, 1.0)) &&
-         std::isfinite(q.motion_b.angular_speed_bound(0.0, 1.0));
+  return keeps_its_length(q.motion_a) && keeps_its_length(q.motion_b);
 }
 
 }  // namespace
