@@ -19,16 +19,6 @@ std::string path_of(const std::string& folder, const std::string& sweep, const c
   return (fs::path(folder) / (sweep + kind)).string();
 }
 
-/// Four digits for reading; the linked CSV has them all.
-std::string readable(const std::string& cell) {
-  const auto number = parse_number(cell);
-  if (!number) {
-    return html(cell);
-  }
-  return *number == std::trunc(*number) && std::abs(*number) < 1e6 ? fmt::format("{:.0f}", *number)
-                                                                   : fmt::format("{:.4g}", *number);
-}
-
 std::string data_cell(const std::string& cell, const char* more = "") {
   if (cell.empty()) {
     return fmt::format("<td class=\"zero{}\">–</td>", more);
@@ -83,6 +73,71 @@ std::string statistic_cell(const std::vector<Cell>& row, std::size_t group, bool
 }
 
 }  // namespace
+
+std::string readable(const std::string& cell) {
+  const auto number = parse_number(cell);
+  if (!number) {
+    return html(cell);
+  }
+  return *number == std::trunc(*number) && std::abs(*number) < 1e6 ? fmt::format("{:.0f}", *number)
+                                                                   : fmt::format("{:.4g}", *number);
+}
+
+std::string csv_table_html(const std::string& path) {
+  const Table table = read_csv(path);
+  std::string out = "<div class=\"scroll\"><table><thead><tr>";
+  for (const std::string& column : table.columns) {
+    out += header_cell(column);
+  }
+  out += "</tr></thead><tbody>\n";
+  for (const auto& row : table.rows) {
+    out += "<tr>";
+    for (const Cell& cell : row) {
+      out += data_cell(to_text(cell));
+    }
+    out += "</tr>\n";
+  }
+  return out + "</tbody></table></div>\n";
+}
+
+std::string errata_html(const ReportEntry& entry) {
+  const Table table = read_csv(path_of(entry.folder, "errata", ".csv"));
+  const auto text = [&](std::size_t row, const char* column) {
+    return to_text(table.rows[row][table.column(column)]);
+  };
+  std::string out =
+      "<div class=\"scroll\"><table class=\"errata\"><thead><tr><th></th><th "
+      "class=\"text\">measured by a "
+      "run</th><th></th><th>predicted</th><th>measured</th><th>unit</th>"
+      "<th>verdict</th></tr></thead>\n";
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const std::string id = text(i, "id");
+    if (i == 0 || text(i - 1, "id") != id) {
+      out += i == 0 ? "<tbody>\n" : "</tbody><tbody>\n";
+      std::string test = html(text(i, "test"));
+      const std::string file = "test-" + id + ".txt";
+      std::error_code error;
+      if (std::filesystem::exists(std::filesystem::path(entry.folder) / file, error)) {
+        test = fmt::format("<a href=\"{}/{}\">{}</a>", html(entry.name), html(file), test);
+      }
+      const std::string section = text(i, "section");
+      out += fmt::format(
+          "<tr class=\"statement\"><th>{}</th><td class=\"text\" colspan=\"6\"><b>Thesis{}:</b> "
+          "{}. "
+          "<b>Reading:</b> {}. <span class=\"test\">Test: {}</span></td></tr>\n",
+          html(id), section == "—" ? "" : " " + html(section),
+          text(i, "thesis") == "—" ? "silent" : html(text(i, "thesis")), html(text(i, "reading")),
+          test);
+    }
+    out += fmt::format(
+        "<tr><td></td><td class=\"text\">{}</td><td>{}</td><td>{}</td><td>{}</td><td "
+        "class=\"text\">{}</td><td class=\"{}\">{}</td></tr>\n",
+        html(text(i, "quantity")), html(text(i, "relation")), readable(text(i, "predicted")),
+        readable(text(i, "measured")), html(text(i, "unit")), html(text(i, "verdict")),
+        html(text(i, "verdict")));
+  }
+  return out + "</tbody></table></div>\n";
+}
 
 std::string html(std::string_view text) {
   std::string out;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "experiments/report/report_entry.hpp"
+
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,6 +10,15 @@ namespace kairos::experiments {
 
 /// Text as HTML: markup characters escaped.
 [[nodiscard]] std::string html(std::string_view text);
+
+/// Four digits for reading, of what is a number; the linked CSV has them all.
+[[nodiscard]] std::string readable(const std::string& cell);
+
+/// A table as it is, numbers in four digits.
+[[nodiscard]] std::string csv_table_html(const std::string& path);
+
+/// The errata: one row per measured number, statements beside them once.
+[[nodiscard]] std::string errata_html(const ReportEntry& entry);
 
 /// The summary of a sweep as an HTML table: methods and axes, then each metric as its median with
 /// quartiles, or its value if there are no repeats. Empty where the table has more than `most`

@@ -37,6 +37,13 @@ std::string data_folder(const std::string& name) {
 std::string figure_folder() { return data_folder("figures"); }
 std::string report_folder() { return data_folder("report"); }
 
+std::string paper_folder() {
+  const std::string installed = data_folder("paper");
+  const fs::path source = fs::path(KAIROS_SOURCE_EXPERIMENTS).parent_path() / "paper";
+  std::error_code error;
+  return !installed.empty() ? installed : fs::is_directory(source, error) ? source.string() : "";
+}
+
 std::vector<std::string> shipped_experiments() {
   std::vector<std::string> names;
   std::error_code error;

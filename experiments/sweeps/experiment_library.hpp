@@ -13,5 +13,7 @@ namespace kairos::experiments {
 [[nodiscard]] std::string figure_folder();
 /// Folder of the report's style sheet; empty if there is none.
 [[nodiscard]] std::string report_folder();
+/// Folder of the paper and its bibliography; empty if there is none.
+[[nodiscard]] std::string paper_folder();
 
 }  // namespace kairos::experiments

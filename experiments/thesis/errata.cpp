@@ -1,7 +1,11 @@
 #include "experiments/thesis/errata.hpp"
 
+#include "experiments/output/atomic_file.hpp"
 #include "experiments/parallel_for.hpp"
+#include "experiments/thesis/test_excerpts.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
+
+#include <fmt/format.h>
 
 #include <cmath>
 
@@ -158,6 +162,16 @@ void measure(FigureData& data) {
   data.count("refuted", refuted, "numbers that refute it");
 }
 
+/// Beside the table, the text of each test that it names.
+std::string add_tests(const std::string& folder) {
+  for (const Erratum& erratum : errata()) {
+    if (const std::string text = test_excerpt(erratum.test); !text.empty()) {
+      write_file(fmt::format("{}/test-{}.txt", folder, erratum.id), text);
+    }
+  }
+  return "";
+}
+
 }  // namespace
 
 ThesisFigure errata_table() {
@@ -175,7 +189,8 @@ ThesisFigure errata_table() {
       .caption = "",
       .finding = "{confirmed} of the measured numbers confirm the reading, {refuted} refute it.",
       .script = "",
-      .measure = measure};
+      .measure = measure,
+      .draw = add_tests};
 }
 
 }  // namespace kairos::experiments::thesis

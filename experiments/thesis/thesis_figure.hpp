@@ -22,8 +22,9 @@ struct ThesisFigure {
   /// Module of `experiments/figures/` that draws it.
   std::string_view script;
   void (*measure)(FigureData& data) = nullptr;
-  /// Draws instead of the script (the frames that a ray tracer makes): writes pictures and
-  /// `figures.csv` (figure, caption) into the folder of the data; empty, or the reason why not.
+  /// Instead of the script (the frames that a ray tracer makes): writes what is not a table into
+  /// the folder of the data, pictures with `figures.csv` (figure, caption); returns nothing, or the
+  /// reason why it could not.
   std::string (*draw)(const std::string& folder) = nullptr;
 };
 

@@ -1,0 +1,70 @@
+#include "experiments/report/figure_html.hpp"
+
+#include "experiments/report/markdown.hpp"
+#include "experiments/report/report_html.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
+
+namespace kairos::experiments {
+namespace {
+
+/// Tables that describe the others.
+bool is_description(const std::string& file) {
+  return file == "columns.csv" || file == "figures.csv" || file == "manifest.csv";
+}
+
+std::string data_links(const ReportEntry& entry) {
+  std::string out;
+  std::size_t shown = 0;
+  for (const std::string& file : entry.data_files()) {
+    if (is_description(file) || ++shown > 6) {
+      continue;
+    }
+    out += fmt::format(" <a href=\"{0}/{1}\">{1}</a>", html(entry.name), html(file));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string figure_label(const std::vector<ReportEntry>& entries, const ReportEntry& entry,
+                         std::size_t drawing) {
+  if (entry.of_thesis) {
+    const bool numbered = entry.name.starts_with("fig");
+    std::string label =
+        numbered ? fmt::format("Figure {}", std::stoi(entry.name.substr(3))) : entry.name;
+    if (entry.figures.size() > 1) {
+      label += fmt::format(" {}", static_cast<char>('a' + static_cast<char>(drawing % 26)));
+    }
+    return label;
+  }
+  std::size_t before = 0;
+  for (const ReportEntry& other : entries) {
+    if (&other == &entry) {
+      break;
+    }
+    before += other.of_thesis ? 0 : other.figures.size();
+  }
+  return fmt::format("Figure E{}", before + drawing + 1);
+}
+
+std::string figure_html(const ReportEntry& entry, std::size_t drawing, const std::string& label) {
+  namespace fs = std::filesystem;
+  const auto& [name, caption] = entry.figures[drawing];
+  const std::string base = html(entry.name + "/" + name);
+  // What a ray tracer makes has no lines to keep: a PNG alone.
+  std::error_code error;
+  const bool vector = fs::exists(fs::path(entry.folder) / (name + ".svg"), error);
+  const std::string shown = base + (vector ? ".svg" : ".png");
+  return fmt::format(
+      "<figure><a class=\"picture\" href=\"{0}\"><img src=\"{0}\" alt=\"{1}\"></a>"
+      "<figcaption><b>{2}.</b> {3} <span class=\"made\"><code>{4}</code>{5}{6}</span>"
+      "</figcaption></figure>\n",
+      shown, html(caption), html(label), inline_html(caption), html(entry.entry("command")),
+      data_links(entry), vector ? fmt::format(" <a href=\"{}.png\">PNG</a>", base) : "");
+}
+
+}  // namespace kairos::experiments
