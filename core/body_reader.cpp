@@ -204,6 +204,18 @@ void read_fixed_or_driven(const TableReader& table, Body& body, const EntityType
   }
 }
 
+/// What a hand holds, and whether its drive can tell when.
+void read_hand(const TableReader& table, Body& body) {
+  if (!body.entity->is_hand()) {
+    return refuse(table, "holds",
+                  fmt::format("a {} has no fist; only hands hold something", body.entity->kind()));
+  }
+  body.holds = table.need("holds", "the name of the body that the closed fist holds").text();
+  if (!body.drive->has_gestures()) {
+    table.fail("drive", "tells no gestures; needed: a track with the column gesture");
+  }
+}
+
 void refuse_unknown_keys(const TableReader& table, const EntityType& type) {
   std::vector<std::string_view> known = scene_keys_of("body");
   for (const EntityKey& key : type.keys) {
@@ -244,6 +256,7 @@ Body read_body(const Item& item, const BodyDefaults& defaults) {
   } else {
     read_fixed_or_driven(table, body, type, defaults.directory);
   }
+  read_hand(table, body);
   return body;
 }
 

@@ -15,6 +15,10 @@ class Drive {
   /// of a recording, where velocity may jump; the end of a polynomial fit). Never of length 0.
   [[nodiscard]] virtual Motion motion(Instant t, double at_most) const = 0;
   [[nodiscard]] virtual std::string description() const = 0;
+  /// Whether it tells when a fist is closed (7.5).
+  [[nodiscard]] virtual bool has_gestures() const { return false; }
+  /// Whether the fist is closed from t on; changes only where a `motion` ends.
+  [[nodiscard]] virtual bool closed(Instant /*t*/) const { return false; }
 };
 
 }  // namespace core

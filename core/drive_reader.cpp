@@ -37,15 +37,17 @@ std::shared_ptr<const Drive> read_track(const TableReader& table, const Body& bo
   const auto smooth = table.find("smooth");
   const auto scale = table.find("position_scale");
   const double factor = scale ? scale->number(limits::scale) : 1.0;
-  std::vector<TrackSample> samples = read_track_csv(path);
-  for (TrackSample& sample : samples) {
+  Recording recording = read_track_csv(path);
+  for (TrackSample& sample : recording.samples) {
     Pose& pose = sample.pose;
     pose.position = body.initial.pose.position + factor * pose.position;
     pose.orientation = (pose.orientation * body.initial.pose.orientation).normalized();
   }
   auto track = std::make_shared<const Track>(
-      std::move(samples),
-      Track::Options{smooth && smooth->flag(), reach(body), fmt::format("track {}", text)});
+      std::move(recording.samples), Track::Options{.smooth = smooth && smooth->flag(),
+                                                   .reach = reach(body),
+                                                   .description = fmt::format("track {}", text),
+                                                   .gestures = recording.gestures});
   if (track->turns()) {
     refuse_turning_half_space(table, body, "track");
   }

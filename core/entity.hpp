@@ -32,13 +32,21 @@ struct Momentum {
   Vector3 velocity = Vector3::Zero();  ///< m/s
 };
 
+/// 7.4: how far something that was hit is moved out of the way, in two readings, s.
+struct Nudge {
+  double along_change = 0.0;    ///< times scale (v' - v): 13.7 takes the difference first
+  double along_velocity = 0.0;  ///< times scale v': the prose of 7.4
+
+  [[nodiscard]] bool none() const { return along_change == 0.0 && along_velocity == 0.0; }
+};
+
 /// What an entity is given in a collision (6.4): the other's momentum, and a normal if the other
 /// is a surface or both are round (13.5).
 struct Gift {
   PhysicsType from = PhysicsType::none;
   Momentum momentum;
   std::optional<Vector3> normal;  ///< unit, world frame
-  double nudge = 0.0;  ///< factor of 7.4: the receiver is moved by nudge * scale * (v' - v)
+  Nudge nudge = {};
 };
 
 /// What the velocity estimator of a tracked entity remembers from frame to frame (7.2, 13.8).
@@ -75,8 +83,12 @@ class Entity {
   virtual void give_force(Vector3& net_force, const Vector3& force) const;
   /// 4.3 Dynamics: the direction and scale of the gravity it feels, times G: (0, -1, 0) for most.
   [[nodiscard]] virtual Vector3 gravity_direction() const { return {0.0, -1.0, 0.0}; }
-  /// Factor of the nudge that this entity causes in a ball it hits (7.4); 0: none.
-  [[nodiscard]] virtual double nudge() const { return 0.0; }
+  /// The nudge that this entity causes in a ball it hits (7.4).
+  [[nodiscard]] virtual Nudge nudge() const { return {}; }
+  /// Its closed fist holds the body that the scene names in `holds` (7.5).
+  [[nodiscard]] virtual bool is_hand() const { return false; }
+  /// Share of a hand's velocity that what it lets go of keeps.
+  [[nodiscard]] virtual double release_share() const { return 1.0; }
   /// Belt of a conveyor for the `newton` law: a mass and a velocity that exchange momentum with
   /// the tangential motion along that velocity. Mass -1: no belt.
   [[nodiscard]] virtual Momentum belt(const Body& self, const BodyState& state) const;

@@ -15,6 +15,10 @@ std::string_view to_string(EventKind kind) {
       return "field-entered";
     case EventKind::field_left:
       return "field-left";
+    case EventKind::grasped:
+      return "grasped";
+    case EventKind::released:
+      return "released";
   }
   return "unknown";
 }

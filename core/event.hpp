@@ -15,6 +15,8 @@ enum class EventKind {
   contact_ends,    ///< it leaves the surface
   field_entered,
   field_left,
+  grasped,   ///< a fist closes: `a` is the hand, `b` what it holds from now on
+  released,  ///< it opens
 };
 [[nodiscard]] std::string_view to_string(EventKind kind);
 
@@ -25,7 +27,7 @@ struct Event {
   BodyIndex a = 0;
   BodyIndex b = 0;
   Contact contact{};
-  BodyState before_a{}, after_a{};  ///< empty for fields
+  BodyState before_a{}, after_a{};  ///< empty for fields and hands
   BodyState before_b{}, after_b{};
 };
 

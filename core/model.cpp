@@ -92,6 +92,7 @@ Model::Model(Scene scene, const ModelOptions& options)
   choose_rotation();
   choose_pairs();
   choose_islands();
+  choose_grips();
   choose_motion();
 }
 
@@ -273,6 +274,29 @@ void Model::choose_islands() {
                            body(island.bodies.front()).name),
                "forces couple them"}});
     }
+  }
+}
+
+/// Which hand holds what.
+void Model::choose_grips() {
+  for (BodyIndex hand = 0; hand < size(); ++hand) {
+    if (!entity(hand).is_hand()) {
+      continue;
+    }
+    const auto held = std::find_if(scene_.bodies.begin(), scene_.bodies.end(),
+                                   [&](const Body& b) { return b.name == body(hand).holds; });
+    const auto i = static_cast<BodyIndex>(held - scene_.bodies.begin());
+    if (islands_[island_of_[i]].bodies.size() > 1) {
+      throw InputError(scene_.path, body(hand).line, fmt::format("body.{}.holds", body(hand).name),
+                       fmt::format("forces couple \"{}\" to other bodies; a hand holds a body "
+                                   "that moves by itself",
+                                   body(i).name));
+    }
+    grips_.push_back({hand, i});
+    decide({{"hands",
+             fmt::format("\"{}\" carries \"{}\" while its fist is closed", body(hand).name,
+                         body(i).name),
+             "what is held has no contacts until it is released and clear of the hand"}});
   }
 }
 

@@ -20,6 +20,12 @@ struct ModelOptions {
 
 using BodyPair = std::pair<BodyIndex, BodyIndex>;  ///< first < second
 
+/// A hand and the body that its closed fist holds.
+struct Grip {
+  BodyIndex hand = 0;
+  BodyIndex held = 0;
+};
+
 /// Why the model leaves something out or puts it in.
 struct Decision {
   std::string topic;   ///< "bodies", "rotation", "motion", "pairs", "broad phase", ...
@@ -67,6 +73,9 @@ class Model {
   /// Name of the broad phase that the scene needs.
   [[nodiscard]] std::string_view broad_phase() const { return broad_phase_; }
 
+  /// Hands and what they hold, in the order of creation of the hands.
+  [[nodiscard]] const std::vector<Grip>& grips() const { return grips_; }
+
   /// Bodies at t = 0; driven bodies where their drive puts them.
   [[nodiscard]] State initial_state() const;
   /// Potential energy of body i under that force, J (0 at the origin).
@@ -84,6 +93,7 @@ class Model {
   void choose_pairs();
   [[nodiscard]] Decision choose_broad_phase();
   void choose_islands();
+  void choose_grips();
   void choose_motion();
   [[nodiscard]] bool keeps_constant_rate(BodyIndex i) const;
   [[nodiscard]] bool can_interact(BodyIndex a, BodyIndex b) const;
@@ -102,6 +112,7 @@ class Model {
   std::vector<Island> islands_;
   std::vector<std::shared_ptr<const Force>> island_forces_;  ///< owns what islands refer to
   std::vector<std::size_t> island_of_;
+  std::vector<Grip> grips_;
   std::vector<bool> closed_form_;
   std::string_view broad_phase_ = "all-pairs";
   std::vector<Decision> decisions_;

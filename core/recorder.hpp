@@ -23,6 +23,9 @@ struct Frame {
   Instant time;
   std::span<const BodyState> bodies;  ///< indexed by `BodyIndex`
   const EnergyLedger& ledger;         ///< balanced at `time`
+  /// Nonzero for bodies that a fist holds, or has let go of and not yet cleared: they have no
+  /// contacts. Indexed by `BodyIndex`; empty: none.
+  std::span<const char> in_hand = {};
 };
 
 /// Listens to a run. All callbacks come in order of time (motions: in order of creation) from the

@@ -37,6 +37,7 @@ struct Body {
   Vector3 normal_B = Vector3::UnitY();  ///< of the reflecting face (5.5), body frame, unit
   double scale = 1.0;                   ///< the model's scale (7.4)
   std::shared_ptr<const Drive> drive;   ///< driven bodies only
+  std::string holds;                    ///< name of what its closed fist holds; hands only
   int line = 0;                         ///< where it was written
 
   /// What it collides as: its shape, or the box around it.

@@ -69,6 +69,23 @@ class BodyCheck {
     need(!is_free || body_.drive == nullptr, "drive", "the body moves freely");
     need(mobility != Mobility::driven || body_.drive != nullptr, "drive",
          fmt::format("is missing; a {} needs to be driven", body_.entity->kind()));
+    if (body_.entity->is_hand()) {
+      check_hand();
+    }
+  }
+
+  void check_hand() const {
+    need(body_.drive->has_gestures(), "drive", "tells no gestures");
+    const auto held = std::find_if(scene_.bodies.begin(), scene_.bodies.end(),
+                                   [this](const Body& b) { return b.name == body_.holds; });
+    need(held != scene_.bodies.end(), "holds",
+         fmt::format("the scene has no \"{}\" to hold", body_.holds));
+    need(held->entity->mobility() == Mobility::free, "holds",
+         fmt::format("\"{}\" does not move freely; a hand holds what does", body_.holds));
+    const auto others = std::count_if(scene_.bodies.begin(), scene_.bodies.end(),
+                                      [this](const Body& b) { return b.holds == body_.holds; });
+    need(others == 1, "holds",
+         fmt::format("two hands hold \"{}\"; allowed: one hand for a body", body_.holds));
   }
 
   const Scene& scene_;

@@ -40,6 +40,7 @@ constexpr SceneKey keys[] = {
     {"body", "G"},
     {"body", "bounds"},
     {"body", "drive"},
+    {"body", "holds"},
     {"body.drive", "track"},
     {"body.drive", "smooth"},
     {"body.drive", "position_scale"},

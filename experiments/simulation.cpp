@@ -106,7 +106,11 @@ std::string refusal(const Model& model, const Plan& plan) {
 /// No scheme can tell what two solids do that start inside each other.
 void refuse_overlap_at_start(const Model& model) {
   const State start = model.initial_state();
-  if (const auto found = PenetrationProbe(model).first(start)) {
+  std::vector<char> in_hand(model.size(), 0);
+  for (const auto& [hand, held] : model.grips()) {
+    in_hand[held] = model.body(hand).drive->closed(Instant{}) ? 1 : 0;
+  }
+  if (const auto found = PenetrationProbe(model).first(start, in_hand)) {
     const Body& a = model.body(found->pair.first);
     const Body& b = model.body(found->pair.second);
     throw InputError(model.scene().path, b.line, "body." + b.name,

@@ -90,25 +90,37 @@ Motion Track::segment(std::size_t i) const {
   return motion;
 }
 
+std::size_t Track::index_at(Instant t) const {
+  const auto next = std::upper_bound(
+      samples_.begin(), samples_.end(), t,
+      [](Instant time, const TrackSample& sample) { return time < Instant{sample.time}; });
+  auto i = static_cast<std::size_t>(next - samples_.begin()) - 1;
+  while (i < segments_.size() && !(segments_[i].end() - t > skipped_part * segments_[i].duration)) {
+    ++i;
+  }
+  return i;
+}
+
 Motion Track::motion(Instant t, double at_most) const {
   const Instant first{samples_.front().time};
   if (t < first) {
     return held(t, std::min(at_most, first - t), samples_.front().pose);
   }
-  const auto next = std::upper_bound(
-      samples_.begin(), samples_.end(), t,
-      [](Instant time, const TrackSample& sample) { return time < Instant{sample.time}; });
-  for (auto i = static_cast<std::size_t>(next - samples_.begin()) - 1; i < segments_.size(); ++i) {
-    const Motion& whole = segments_[i];
-    const double s = std::max(0.0, t - whole.start);
-    if (whole.duration - s > skipped_part * whole.duration) {
-      Motion rest = s > 0.0 ? whole.shifted(s) : whole;
-      rest.start = t;
-      rest.duration = std::min(at_most, whole.end() - t);
-      return rest;
-    }
+  const std::size_t i = index_at(t);
+  if (i == segments_.size()) {
+    return held(t, at_most, samples_.back().pose);
   }
-  return held(t, at_most, samples_.back().pose);
+  const Motion& whole = segments_[i];
+  const double s = std::max(0.0, t - whole.start);
+  Motion rest = s > 0.0 ? whole.shifted(s) : whole;
+  rest.start = t;
+  rest.duration = std::min(at_most, whole.end() - t);
+  return rest;
+}
+
+bool Track::closed(Instant t) const {
+  return t < Instant{samples_.front().time} ? samples_.front().closed
+                                            : samples_[index_at(t)].closed;
 }
 
 bool Track::turns() const {

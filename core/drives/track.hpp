@@ -12,6 +12,7 @@ inline namespace core {
 struct TrackSample {
   double time = 0.0;  ///< s
   Pose pose;
+  bool closed = false;  ///< the fist, from here to the next sample
 };
 
 /// A body that follows a recording. Between two samples it moves on a straight line and turns at a
@@ -25,6 +26,7 @@ class Track : public Drive {
     bool smooth = false;
     double reach = 0.0;       ///< m; no point of the body is farther from its origin
     std::string description;  ///< where it comes from
+    bool gestures = false;    ///< whether `TrackSample::closed` was told
   };
 
   /// At least one sample, times strictly increasing (asserted: the reader has refused others).
@@ -32,6 +34,8 @@ class Track : public Drive {
 
   [[nodiscard]] Motion motion(Instant t, double at_most) const override;
   [[nodiscard]] std::string description() const override { return options_.description; }
+  [[nodiscard]] bool has_gestures() const override { return options_.gestures; }
+  [[nodiscard]] bool closed(Instant t) const override;
   [[nodiscard]] const std::vector<TrackSample>& samples() const { return samples_; }
   /// Whether the orientation ever changes.
   [[nodiscard]] bool turns() const;
@@ -39,15 +43,25 @@ class Track : public Drive {
  private:
   /// The curve between samples i and i + 1 from that sample on, made once.
   [[nodiscard]] Motion segment(std::size_t i) const;
+  /// Index of the sample whose segment begins at or before t; a remainder of a segment that only
+  /// rounding left over belongs to the next. Only for t not before the first sample.
+  [[nodiscard]] std::size_t index_at(Instant t) const;
 
   std::vector<TrackSample> samples_;
   Options options_;
   std::vector<Motion> segments_;
 };
 
-/// Reads the samples of a recording (columns t, x, y, z, qw, qx, qy, qz; SI units; the quaternion
-/// columns may be left out together). Throws `InputError`.
-[[nodiscard]] std::vector<TrackSample> read_track_csv(const std::string& path);
+/// A recording as read.
+struct Recording {
+  std::vector<TrackSample> samples;
+  bool gestures = false;  ///< it has the column `gesture`
+};
+
+/// Reads a recording (columns t, x, y, z, qw, qx, qy, qz, gesture; SI units; gesture is 1 for a
+/// closed fist and 0 for an open hand; the quaternion columns may be left out together, and so may
+/// the gesture). Throws `InputError`.
+[[nodiscard]] Recording read_track_csv(const std::string& path);
 
 }  // namespace core
 }  // namespace kairos

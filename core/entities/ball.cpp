@@ -39,10 +39,11 @@ void Ball::give_momentum(const Body& self, BodyState& state, const Gift& gift) c
     }
   }
   state.twist.linear = after;
-  // 13.9: out of the bat's way, along the change of velocity: line 20 of 13.7 has taken the
-  // difference before line 28 uses it, whatever the prose of 7.4 says.
-  if (gift.nudge != 0.0) {
-    state.pose.position += gift.nudge * self.scale * (after - before);
+  // 13.9: out of the bat's way, along the change of velocity (line 20 of 13.7 has taken the
+  // difference before line 28 uses it) or along the new velocity (the prose of 7.4).
+  if (!gift.nudge.none()) {
+    state.pose.position += self.scale * (gift.nudge.along_change * (after - before) +
+                                         gift.nudge.along_velocity * after);
   }
 }
 

@@ -12,13 +12,13 @@ constexpr double shortest_interval = 1e-8;
 /// 7.2, 7.3: a bat in a tracked hand. It gives its mass and its velocity and takes nothing.
 class Bat : public Entity {
  public:
-  Bat(double threshold, double velocity_scale, double nudge)
+  Bat(double threshold, double velocity_scale, const Nudge& nudge)
       : threshold_(threshold), velocity_scale_(velocity_scale), nudge_(nudge) {}
 
   [[nodiscard]] std::string_view kind() const override { return "bat"; }
   [[nodiscard]] PhysicsType physics_type() const override { return PhysicsType::ttbat; }
   [[nodiscard]] Mobility mobility() const override { return Mobility::driven; }
-  [[nodiscard]] double nudge() const override { return nudge_; }
+  [[nodiscard]] Nudge nudge() const override { return nudge_; }
   [[nodiscard]] Momentum get_momentum(const Body& self, const BodyState& state) const override {
     return {self.mass, state.twist.linear};
   }
@@ -44,7 +44,7 @@ class Bat : public Entity {
  private:
   double threshold_;       // m
   double velocity_scale_;  // 7.3: empirical
-  double nudge_;           // s; 7.4
+  Nudge nudge_;            // 7.4
 };
 
 }  // namespace
@@ -58,9 +58,11 @@ EntityType bat() {
                     "displacement that renews the velocity estimated from positions"},
                    {"velocity_scale", "", 1.0, 0.0, 1e6, "empirical factor of that velocity"},
                    {"nudge", "s", 0.0, 0.0, 1e3,
-                    "a ball that it hits is moved by nudge * scale * (v' - v); 0.0025 in 7.4"}},
+                    "a ball that it hits is moved by nudge * scale * (v' - v); 0.0025 in 13.9"},
+                   {"nudge_prose", "s", 0.0, 0.0, 1e3,
+                    "the same along v', as the prose of 7.4 has it"}},
           .make = [](std::span<const double> values) {
-            return std::make_shared<const Bat>(values[0], values[1], values[2]);
+            return std::make_shared<const Bat>(values[0], values[1], Nudge{values[2], values[3]});
           }};
 }
 

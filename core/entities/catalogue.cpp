@@ -11,6 +11,7 @@ EntityType body();
 EntityType conveyor();
 EntityType anti_gravity_pad();
 EntityType bat();
+EntityType hand();
 EntityType balloon();
 
 }  // namespace entities
@@ -23,6 +24,7 @@ std::span<const EntityType> entity_catalogue() {
       entities::conveyor(),
       entities::anti_gravity_pad(),
       entities::bat(),
+      entities::hand(),
       entities::balloon(),
   };
   return catalogue;

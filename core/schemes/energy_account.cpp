@@ -153,6 +153,24 @@ void EnergyAccount::leg(const Leg& leg, std::span<const Motion> motions, Instant
   }
 }
 
+void EnergyAccount::carried(const Island& island, Instant t, std::span<const BodyState> from,
+                            std::span<const BodyState> to) {
+  double work = 0.0;
+  for (std::size_t k = 0; k < island.bodies.size(); ++k) {
+    const BodyIndex i = island.bodies[k];
+    const BodyInertia& inertia = island.inertia[k];
+    work += kinetic_gain(inertia.mass, from[i].twist.linear, to[i].twist.linear) -
+            model_.gravity_force(i).dot(to[i].pose.position - from[i].pose.position);
+    if (inertia.rotates) {
+      work += spin_energy(inertia, to[i]) - spin_energy(inertia, from[i]);
+    }
+  }
+  if (!island.forces.empty()) {
+    work += island_potential(island, t, to) - island_potential(island, t, from);
+  }
+  ledger_.add(EnergyLine::conveyor_and_hand, work);
+}
+
 void EnergyAccount::open(Instant t, std::span<const BodyState> bodies) {
   ledger_.open(kinetic(bodies), potential(t, bodies));
 }

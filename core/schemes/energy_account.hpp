@@ -51,6 +51,11 @@ class EnergyAccount {
   /// `motions`: one per body of the island, covering [start, start + duration].
   void leg(const Leg& leg, std::span<const Motion> motions, Instant start, double duration);
 
+  /// A hand took the bodies of an island from one state to another (both by `BodyIndex`): what that
+  /// did to their energy at time t.
+  void carried(const Island& island, Instant t, std::span<const BodyState> from,
+               std::span<const BodyState> to);
+
   /// A body was moved without time passing: work against gravity.
   void moved(BodyIndex i, const Vector3& displacement) {
     ledger_.add(EnergyLine::position_correction, -model_.gravity_force(i).dot(displacement));

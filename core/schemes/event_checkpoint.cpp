@@ -20,7 +20,7 @@ void EventWorld::Actor::persist(Archive& archive) {
 }
 
 void EventWorld::Flow::persist(Archive& archive) {
-  archive(island.constant_force, states, launched, roundoff, booked);
+  archive(island.constant_force, carried, states, launched, roundoff, booked);
   stepper->persist(archive);
 }
 
@@ -34,8 +34,8 @@ void EventWorld::offer_checkpoint(Instant t, bool last) {
 }
 
 void EventWorld::persist(Archive& archive) {
-  archive(time_, epoch_end_, frame_index_, now_, booked_, drawn_, field_forces_, actors_, queue_,
-          ledger_, cost_);
+  archive(time_, epoch_end_, frame_index_, now_, booked_, drawn_, field_forces_, grasps_, in_hand_,
+          actors_, queue_, ledger_, cost_);
   for (Flow& flow : flows_) {
     archive(flow);
   }

@@ -18,7 +18,7 @@ class EventDriven final : public Scheme {
       return "event-driven needs a detector that locates contacts in time";
     }
     for (BodyIndex i = 0; i < model.size(); ++i) {
-      if (model.entity(i).nudge() != 0.0) {
+      if (!model.entity(i).nudge().none()) {
         return "the nudge of '" + model.body(i).name +
                "' moves bodies in space; event-driven moves them in time only";
       }

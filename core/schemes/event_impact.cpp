@@ -49,6 +49,8 @@ void EventWorld::take() {
       return cross_field(a, b, event.time, true);
     case Due::field_left:
       return cross_field(a, b, event.time, false);
+    case Due::clear_of_hand:
+      return clear_of_hand(a, b, event.time);
     case Due::horizon:
       return predict(a, event.time);
     case Due::recheck:

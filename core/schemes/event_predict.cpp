@@ -91,6 +91,10 @@ double EventWorld::window_length(BodyIndex i, Instant t) {
 void EventWorld::predict_pair(BodyIndex i, BodyIndex j, Instant t) {
   // Queries go by name, so that their bits do not depend on who asks.
   const auto [a, b] = rank_[i] < rank_[j] ? std::pair{i, j} : std::pair{j, i};
+  const bool leaving = is_leaving(a, b);
+  if (!leaving && (in_hand_[a] != 0 || in_hand_[b] != 0)) {
+    return;
+  }
   const auto supported_by = [&](BodyIndex ball, BodyIndex surface) {
     return actors_[ball].support && actors_[ball].support->surface == surface;
   };
@@ -106,7 +110,9 @@ void EventWorld::predict_pair(BodyIndex i, BodyIndex j, Instant t) {
     const auto& fields = actors_[body].fields;
     return std::find(fields.begin(), fields.end(), field) != fields.end();
   };
-  if (inside(a, b) || inside(b, a)) {
+  if (leaving) {
+    predict_parting(a, b, t, duration, Due::clear_of_hand);
+  } else if (inside(a, b) || inside(b, a)) {
     predict_parting(a, b, t, duration, Due::field_left);
   } else {
     predict_meeting(a, b, t, duration);

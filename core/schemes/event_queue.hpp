@@ -20,8 +20,9 @@ enum class Due : std::uint8_t {
   contact_begins,  ///< the bounces of `a` on `b` have died down: told, nothing changes
   field_entered,   ///< between `a` and `b`
   field_left,
-  horizon,  ///< pairs of `a` have been predicted up to here
-  recheck,  ///< ask the detector again
+  clear_of_hand,  ///< what a hand has let go of is clear of it
+  horizon,        ///< pairs of `a` have been predicted up to here
+  recheck,        ///< ask the detector again
   impact,
 };
 

@@ -25,6 +25,8 @@ EventWorld::EventWorld(const Model& model, const Method& method, const SchemeOpt
       booked_(now_),
       drawn_(now_),
       field_forces_(model.size(), Vector3::Zero()),
+      grasps_(model.grips().size(), Grasp::open),
+      in_hand_(model.size(), 0),
       end_(Instant{} + options.duration),
       // Not shorter than some frames, so that epochs cost nothing.
       epoch_(std::max(model.scene().duration, 64.0 * mean_frame_duration(options.frames))),
@@ -86,6 +88,9 @@ bool EventWorld::begin() {
       flow.stepper->start(flow.island, time_, flow.states);
       next_segment(flow, time_);
     }
+  }
+  for (const auto& grip : model_.grips()) {
+    follow_hand(grip.hand, time_);
   }
   predict_all(time_);
   return true;
@@ -250,6 +255,7 @@ void EventWorld::segment_end(BodyIndex i, Instant t) {
   if (model_.mobility(i) == Mobility::driven) {
     drive(i, t);
     riders(i, t);
+    follow_hand(i, t);
     predict(i, t);
     return;
   }
@@ -274,6 +280,13 @@ void EventWorld::book(Flow& flow, Instant t) {
     return;
   }
   const BodyIndex first = flow.island.bodies.front();
+  if (flow.carried) {
+    now_[first] = state_at(first, t);
+    account_.carried(flow.island, t, booked_, now_);
+    booked_[first] = now_[first];
+    flow.booked = t;
+    return;
+  }
   // At its end a segment is where the stepper left it, which its motion tells up to roundoff.
   const bool whole = !(actors_[first].motion.end() - t > 0.0) && !actors_[first].support;
   for (std::size_t k = 0; k < flow.states.size(); ++k) {
@@ -335,7 +348,7 @@ bool EventWorld::draw() {
   }
   account_.balance(t, drawn_);
   recorder_.stage(Stage::draw, 1.0);
-  recorder_.frame({frame_index_, t, drawn_, ledger_});
+  recorder_.frame({frame_index_, t, drawn_, ledger_, in_hand_});
   ++cost_.frames;
   return open_frame(t);
 }

@@ -4,6 +4,7 @@
 #include "core/scheme.hpp"
 #include "core/schemes/energy_account.hpp"
 #include "core/schemes/event_queue.hpp"
+#include "core/schemes/grasp.hpp"
 #include "core/schemes/support.hpp"
 
 #include <memory>
@@ -59,6 +60,7 @@ class EventWorld {
     Island island;
     std::unique_ptr<Stepper> stepper;
     bool exact = false;
+    bool carried = false;             ///< a hand holds its body
     std::vector<BodyState> states{};  ///< at the end of the segment
     std::vector<Motion> motions{};
     std::unique_ptr<SupportForce> support{};  ///< while it slides under state-dependent forces
@@ -97,6 +99,14 @@ class EventWorld {
   void push(Instant t, Due due, BodyIndex a, BodyIndex b, double patience = 0.0,
             bool decided = true);
   void leave_overlap(BodyIndex a, BodyIndex b, Instant t, double duration);
+
+  // Hands
+  void follow_hand(BodyIndex hand, Instant t);
+  void grasp(std::size_t k, Instant t);  ///< k: of the model's grips
+  void carry(BodyIndex hand, BodyIndex held, double share, Instant t);
+  void release(std::size_t k, Instant t);
+  void clear_of_hand(BodyIndex a, BodyIndex b, Instant t);
+  [[nodiscard]] bool is_leaving(BodyIndex a, BodyIndex b) const;
 
   // Events
   void impact(BodyIndex a, BodyIndex b, Instant t, double patience, bool decided);
@@ -145,6 +155,8 @@ class EventWorld {
   State booked_;  ///< where the ledger is
   State drawn_;   ///< scratch for frames
   std::vector<Vector3> field_forces_;
+  std::vector<Grasp> grasps_;  ///< of the model's grips
+  std::vector<char> in_hand_;  ///< by body: no contacts
   EventQueue queue_;
   std::unique_ptr<BroadPhase> broad_phase_;  ///< null: every partner is a neighbour
   SweptBounds swept_bounds_;

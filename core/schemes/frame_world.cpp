@@ -23,6 +23,8 @@ FrameWorld::FrameWorld(const Model& model, const Method& method, const SchemeOpt
       after_(bodies_),
       given_force_(model.size(), Vector3::Zero()),
       trackers_(model.size()),
+      grasps_(model.grips().size(), Grasp::open),
+      in_hand_(model.size(), 0),
       paths_(model.size()),
       account_(model, ledger_) {
   for (BodyIndex i = 0; i < model.size(); ++i) {
@@ -49,6 +51,8 @@ FrameWorld::FrameWorld(const Model& model, const Method& method, const SchemeOpt
     Archive archive(options_.resume);
     persist(archive);
     resumed_ = true;
+  } else {
+    follow_hands();
   }
 }
 
@@ -57,7 +61,7 @@ bool FrameWorld::draw() {
     check_finite();
     account_.balance(now_, bodies_);
     trace(Stage::draw, 1.0);
-    recorder_.frame({frame_index_, now_, bodies_, ledger_});
+    recorder_.frame({frame_index_, now_, bodies_, ledger_, in_hand_});
     ++cost_.frames;
   }
   const bool more = open_frame();
@@ -138,6 +142,9 @@ bool FrameWorld::step(Mover& mover, Instant t, double h, double& advanced) {
 void FrameWorld::advance(double h) {
   record_fields_left();
   for (Mover& mover : movers_) {
+    if (mover.carried) {
+      continue;
+    }
     gather(mover);
     begin_step(mover, now_);
     const bool dense = wants_motions_ || !mover.island.forces.empty();
@@ -162,6 +169,7 @@ void FrameWorld::end_step(double h) {
   for (const BodyIndex i : driven_) {
     settle(i, now_, h);
   }
+  follow_hands();
   if (any_given_) {
     std::fill(given_force_.begin(), given_force_.end(), Vector3::Zero());
     any_given_ = false;

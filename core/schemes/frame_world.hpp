@@ -3,6 +3,7 @@
 #include "core/model.hpp"
 #include "core/scheme.hpp"
 #include "core/schemes/energy_account.hpp"
+#include "core/schemes/grasp.hpp"
 
 #include <memory>
 #include <span>
@@ -46,11 +47,8 @@ class FrameWorld {
   /// Would the two overlap at s of the proposal?
   [[nodiscard]] bool overlap_at(BodyIndex a, BodyIndex b, double s);
 
-  /// Do the two overlap now?
-  [[nodiscard]] bool overlap(BodyIndex a, BodyIndex b) {
-    ++cost_.overlap_tests;
-    return detector_.overlaps(model_.shape(a), bodies_[a].pose, model_.shape(b), bodies_[b].pose);
-  }
+  /// Do the two overlap now, and is neither of them in a hand?
+  [[nodiscard]] bool overlap(BodyIndex a, BodyIndex b) { return !in_hand(a, b) && touches(a, b); }
   /// 13.5: the two exchange now what their entities and the impact law say.
   void handle(BodyIndex a, BodyIndex b) { collide(a, b, bodies_[a], bodies_[b], now_); }
 
@@ -70,6 +68,7 @@ class FrameWorld {
     std::unique_ptr<Stepper> stepper;
     bool exact = false;
     bool jumped = false;               ///< restart before the next step
+    bool carried = false;              ///< a hand holds its body: it has no steps of its own
     std::vector<BodyState> states{};   ///< at the end of what was computed
     std::vector<Motion> motions{};     ///< dense output of the last step
     double last_step = 0.0;            ///< s
@@ -87,6 +86,17 @@ class FrameWorld {
 
     void persist(Archive& archive);
   };
+
+  [[nodiscard]] bool in_hand(BodyIndex a, BodyIndex b) const {
+    return in_hand_[a] != 0 || in_hand_[b] != 0;
+  }
+  [[nodiscard]] bool touches(BodyIndex a, BodyIndex b) {
+    ++cost_.overlap_tests;
+    return detector_.overlaps(model_.shape(a), bodies_[a].pose, model_.shape(b), bodies_[b].pose);
+  }
+  void follow_hands();
+  void carry(BodyIndex hand, BodyIndex held, double share);
+  void note_grasp(EventKind kind, BodyIndex hand, BodyIndex held);
 
   void gather(Mover& mover) const;
   void scatter(const Mover& mover);
@@ -132,6 +142,8 @@ class FrameWorld {
   bool any_given_ = false;
   std::vector<TrackerMemory> trackers_;
   std::vector<BodyIndex> driven_;
+  std::vector<Grasp> grasps_;  ///< of the model's grips
+  std::vector<char> in_hand_;  ///< by body: no contacts
   std::vector<Mover> movers_;
   std::vector<std::vector<Motion>> paths_;  ///< of the proposal, per body, end to end
   double proposed_ = 0.0;

@@ -11,7 +11,7 @@ static void persist(Archive& archive, TrackerMemory& memory) {
 }
 
 void FrameWorld::Mover::persist(Archive& archive) {
-  archive(island.constant_force, jumped, states, last_step);
+  archive(island.constant_force, jumped, carried, states, last_step);
   stepper->persist(archive);
 }
 
@@ -27,8 +27,8 @@ void FrameWorld::offer_checkpoint(bool last) {
 }
 
 void FrameWorld::persist(Archive& archive) {
-  archive(now_, frame_index_, last_step_, bodies_, given_force_, any_given_, trackers_, in_field_,
-          ledger_, cost_);
+  archive(now_, frame_index_, last_step_, bodies_, given_force_, any_given_, trackers_, grasps_,
+          in_hand_, in_field_, ledger_, cost_);
   for (Mover& mover : movers_) {
     archive(mover);
   }

@@ -12,6 +12,9 @@ void FrameWorld::propose(double h) {
   record_fields_left();
   proposed_ = h;
   for (Mover& mover : movers_) {
+    if (mover.carried) {
+      continue;
+    }
     gather(mover);
     mover.booked = mover.states;
     mover.booked_until = 0.0;
@@ -24,6 +27,11 @@ void FrameWorld::propose(double h) {
     paths_[i].clear();
     for (double done = 0.0; done < h; done += paths_[i].back().duration) {
       paths_[i].push_back(model_.body(i).drive->motion(now_ + done, h - done));
+    }
+  }
+  for (const auto& [hand, held] : model_.grips()) {
+    if (movers_[model_.island_of(held)].carried) {
+      paths_[held] = paths_[hand];
     }
   }
 }
@@ -80,6 +88,9 @@ double FrameWorld::largest_movement() const {
 void FrameWorld::accept(double s) {
   const bool whole = s >= proposed_;
   for (Mover& mover : movers_) {
+    if (mover.carried) {
+      continue;
+    }
     book_path(mover, s);
     for (std::size_t k = 0; k < mover.states.size(); ++k) {
       const BodyIndex i = mover.island.bodies[k];
@@ -194,6 +205,9 @@ TimeOfImpact FrameWorld::time_of_impact(BodyIndex a, BodyIndex b, double until) 
 }
 
 bool FrameWorld::swept_overlap(BodyIndex a, BodyIndex b) {
+  if (in_hand(a, b)) {
+    return false;
+  }
   for (double s = 0.0; s < proposed_;) {
     const double length = std::max(common_stretch(a, b, s, proposed_), 0.0);
     ++cost_.overlap_tests;
@@ -210,6 +224,9 @@ bool FrameWorld::swept_overlap(BodyIndex a, BodyIndex b) {
 }
 
 bool FrameWorld::overlap_at(BodyIndex a, BodyIndex b, double s) {
+  if (in_hand(a, b)) {
+    return false;
+  }
   ++cost_.overlap_tests;
   return detector_.overlaps(model_.shape(a), on_path(a, s).pose, model_.shape(b),
                             on_path(b, s).pose);

@@ -16,6 +16,7 @@ void add_toi_command(CLI::App& app);
 void add_sweep_command(CLI::App& app);
 void add_experiment_command(CLI::App& app);
 void add_reproduce_command(CLI::App& app);
+void add_record_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 
 }  // namespace kairos::experiments

@@ -30,7 +30,7 @@ void BetweenWatch::frame(const Frame& frame) {
       for (BodyIndex i = 0; i < motions_.size(); ++i) {
         sample_[i] = state_at(i, t);
       }
-      const auto deepest = probe_.deepest(sample_);
+      const auto deepest = probe_.deepest(sample_, frame.in_hand);
       max_depth_ = std::max(max_depth_, deepest ? deepest->depth : 0.0);
     }
     for (auto& motions : motions_) {

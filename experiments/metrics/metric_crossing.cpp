@@ -55,6 +55,10 @@ void CrossingWatch::look(Gate& gate, const Vector3& now) {
 
 void CrossingWatch::frame(const Frame& frame) {
   for (Gate& gate : gates_) {
+    if (!frame.in_hand.empty() && frame.in_hand[gate.body] != 0) {
+      gate.side = 0;  // a hand may put it anywhere
+      continue;
+    }
     look(gate, frame.bodies[gate.solid].pose.to_body(frame.bodies[gate.body].pose.position));
   }
 }

@@ -15,6 +15,10 @@ double finite_radius(const Shape& shape) {
   return std::isfinite(radius) ? radius : 0.0;
 }
 
+bool held(const BodyPair& pair, std::span<const char> in_hand) {
+  return !in_hand.empty() && (in_hand[pair.first] != 0 || in_hand[pair.second] != 0);
+}
+
 }  // namespace
 
 PenetrationProbe::PenetrationProbe(const Model& model)
@@ -44,10 +48,11 @@ double PenetrationProbe::depth(const Pair& pair, std::span<const BodyState> bodi
   return gap < -touching ? -gap : 0.0;
 }
 
-std::optional<Penetration> PenetrationProbe::deepest(std::span<const BodyState> bodies) const {
+std::optional<Penetration> PenetrationProbe::deepest(std::span<const BodyState> bodies,
+                                                     std::span<const char> in_hand) const {
   Penetration found;
   for (const Pair& pair : pairs_) {
-    const double d = depth(pair, bodies);
+    const double d = held(pair.bodies, in_hand) ? 0.0 : depth(pair, bodies);
     if (d > found.depth) {
       found = {pair.bodies, d};
     }
@@ -55,9 +60,10 @@ std::optional<Penetration> PenetrationProbe::deepest(std::span<const BodyState> 
   return found.depth > 0.0 ? std::optional(found) : std::nullopt;
 }
 
-std::optional<Penetration> PenetrationProbe::first(std::span<const BodyState> bodies) const {
+std::optional<Penetration> PenetrationProbe::first(std::span<const BodyState> bodies,
+                                                   std::span<const char> in_hand) const {
   for (const Pair& pair : pairs_) {
-    const double d = depth(pair, bodies);
+    const double d = held(pair.bodies, in_hand) ? 0.0 : depth(pair, bodies);
     if (d > 0.0) {
       return Penetration{pair.bodies, d};
     }

@@ -25,10 +25,13 @@ class PenetrationProbe {
  public:
   explicit PenetrationProbe(const Model& model);
 
-  /// The deepest of all pairs; the first of equals in the order of `Model::pairs`.
-  [[nodiscard]] std::optional<Penetration> deepest(std::span<const BodyState> bodies) const;
+  /// The deepest of all pairs; the first of equals in the order of `Model::pairs`. What is in a
+  /// hand (see `Frame::in_hand`) has no contacts and penetrates nothing.
+  [[nodiscard]] std::optional<Penetration> deepest(std::span<const BodyState> bodies,
+                                                   std::span<const char> in_hand = {}) const;
   /// The first pair that penetrates.
-  [[nodiscard]] std::optional<Penetration> first(std::span<const BodyState> bodies) const;
+  [[nodiscard]] std::optional<Penetration> first(std::span<const BodyState> bodies,
+                                                 std::span<const char> in_hand = {}) const;
 
  private:
   struct Pair {

@@ -40,7 +40,7 @@ void MetricsRecorder::frame(const Frame& frame) {
   if (overlapping_) {
     metrics_.time_overlapping += frame.time - shown_since_;
   }
-  const std::optional<Penetration> deepest = probe_->deepest(frame.bodies);
+  const std::optional<Penetration> deepest = probe_->deepest(frame.bodies, frame.in_hand);
   overlapping_ = deepest.has_value();
   shown_since_ = frame.time;
   if (deepest) {

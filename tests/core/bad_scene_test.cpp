@@ -389,6 +389,8 @@ TEST_CASE("bad tracks and frame times are named by file and line", "[scene][inpu
       {header + "0,0,0,1e13,1,0,0,0\n", 2, "z"},
       {header + "0,0,0,0,1,1,0,0\n", 2, "qw,qx,qy,qz"},
       {header + "0,0,0,0,0,0,0,0\n", 2, "qw,qx,qy,qz"},
+      {"t,x,y,z,gesture\n0,0,0,0,2\n", 2, "gesture"},
+      {"t,x,y,z,gesture\n0,0,0,0,1\n1,0,0,0,fist\n", 3, "gesture"},
   };
   for (const BadFile& bad : tracks) {
     check(bat_lines + "drive = {track = \"track.csv\"}", bad);

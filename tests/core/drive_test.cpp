@@ -173,6 +173,26 @@ TEST_CASE("track: smooth has a continuous velocity and takes parabolas exactly",
   }
 }
 
+TEST_CASE("track: a gesture lasts from its sample to the next, as its motions do", "[drive]") {
+  std::vector<TrackSample> samples{sample(0.1, {0, 0, 0}), sample(0.2, {1, 0, 0}),
+                                   sample(0.3, {2, 0, 0})};
+  samples[1].closed = true;
+  const Track track(samples, {.gestures = true});
+  CHECK(track.has_gestures());
+  for (const auto& [t, closed] : {std::pair{0.0, false},
+                                  {0.15, false},
+                                  {0.2, true},
+                                  {0.25, true},
+                                  {0.3, false},
+                                  {9.0, false}}) {
+    INFO(t);
+    CHECK(track.closed(Instant{t}) == closed);
+  }
+  // Where a motion ends, rounding included, the next gesture begins.
+  CHECK(track.closed(track.motion(Instant{0.15}, 1.0).end()));
+  CHECK_FALSE(Track(samples, {}).has_gestures());
+}
+
 TEST_CASE("track: walking from end to end never meets a motion of length 0", "[drive]") {
   const std::uint64_t seed = 8;
   CAPTURE(seed);

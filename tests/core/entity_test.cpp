@@ -89,7 +89,7 @@ TEST_CASE("wall: mirrors a ball, whichever way it flies and its normal points", 
 TEST_CASE("walls, pads, conveyors and bats take nothing", "[entity]") {
   const Body ball = make("ball", 1.0);
   const Gift gift = gift_of(ball, moving({1, 2, 3}));
-  for (const char* kind : {"wall", "anti-gravity-pad", "conveyor", "bat"}) {
+  for (const char* kind : {"wall", "anti-gravity-pad", "conveyor", "bat", "hand"}) {
     INFO(kind);
     const Body body = make(kind, 1.0);
     BodyState state = moving({7, 8, 9});
@@ -176,12 +176,18 @@ TEST_CASE("bat: moves the ball out of its way by the nudge, along the change of 
           "[entity]") {
   Body ball = make("ball", 1.0);
   ball.scale = 2.0;
-  const Body bat = make("bat", 3.0, {0.01, 1.0, 0.0025});
+  const Body bat = make("bat", 3.0, {0.01, 1.0, 0.0025, 0.0});
   BodyState state = moving({-1, 0, 0});
   ball.entity->give_momentum(ball, state, gift_of(bat, moving({4, 0, 0})));
   // v' = ((1-3)(-1) + 2*3*4)/4 = 6.5.
   CHECK(state.twist.linear.x() == Approx(6.5));
   CHECK(state.pose.position.x() == Approx(0.0025 * 2.0 * 7.5));
+  // The prose of 7.4: along v' itself.
+  BodyState prose = moving({-1, 0, 0});
+  ball.entity->give_momentum(
+      ball, prose, gift_of(make("bat", 3.0, {0.01, 1.0, 0.0, 0.0025}), moving({4, 0, 0})));
+  CHECK(prose.twist.linear.x() == Approx(6.5));
+  CHECK(prose.pose.position.x() == Approx(0.0025 * 2.0 * 6.5));
   // The default does not move it.
   BodyState still = moving({-1, 0, 0});
   ball.entity->give_momentum(ball, still, gift_of(make("bat", 3.0), moving({4, 0, 0})));

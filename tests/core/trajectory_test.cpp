@@ -38,7 +38,7 @@ TEST_CASE("trajectory: keeps frames and starts again", "[trajectory]") {
 TEST_CASE("names of events and stages are words without spaces", "[trajectory]") {
   for (const EventKind kind :
        {EventKind::impact, EventKind::contact_begins, EventKind::contact_ends,
-        EventKind::field_entered, EventKind::field_left}) {
+        EventKind::field_entered, EventKind::field_left, EventKind::grasped, EventKind::released}) {
     CHECK(to_string(kind).find(' ') == std::string_view::npos);
     CHECK_FALSE(to_string(kind).empty());
   }

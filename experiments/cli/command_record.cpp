@@ -1,0 +1,71 @@
+#include "core/error.hpp"
+#include "experiments/cli/commands.hpp"
+#include "experiments/output/output_folder.hpp"
+#include "experiments/rally/recording.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+
+namespace kairos::experiments {
+namespace {
+
+struct RecordCommand {
+  RallyOptions rally;
+  std::string out;
+
+  void run() const;
+};
+
+void RecordCommand::run() const {
+  if (!(rally.slowest <= rally.fastest)) {
+    throw InputError(
+        "", 0, "--slowest",
+        fmt::format("is {} m/s, above --fastest, {} m/s", rally.slowest, rally.fastest));
+  }
+  OutputFolder folder(out);
+  const RallyRecording recording = make_rally(rally);
+  folder.file("bat.csv").write(bat_csv(recording));
+  folder.file("hand.csv").write(hand_csv(recording));
+  folder.file("strokes.csv").write(strokes_csv(recording));
+  folder.publish();
+  fmt::print("{} strokes in {} s, seed {} -> {}\n", recording.strokes.size(), recording.duration(),
+             rally.seed, out);
+}
+
+}  // namespace
+
+void add_record_command(CLI::App& app) {
+  const auto command = std::make_shared<RecordCommand>();
+  RallyOptions& rally = command->rally;
+  CLI::App* record = app.add_subcommand(
+      "record", "Write tracker recordings of a rally that nobody played: bat, hand, strokes");
+  record->add_option("--out", command->out, "folder for bat.csv, hand.csv and strokes.csv")
+      ->required()
+      ->type_name("DIR");
+  record->add_option("--seed", rally.seed, "the same seed, the same rally")->capture_default_str();
+  record->add_option("--strokes", rally.strokes, "how many")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  record->add_option("--rate", rally.rate, "samples per second of each tracker")
+      ->check(CLI::Range(1.0, 1e6))
+      ->capture_default_str();
+  record->add_option("--noise", rally.noise, "standard deviation of a coordinate, m")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  record->add_option("--angle-noise", rally.angle_noise, "of a turn about each axis, degrees")
+      ->check(CLI::Range(0.0, 90.0))
+      ->capture_default_str();
+  // Slower swings would not be over before the next ball is served.
+  record->add_option("--slowest", rally.slowest, "least of the strokes' greatest speeds, m/s")
+      ->check(CLI::Range(2.0, 100.0))
+      ->capture_default_str();
+  record->add_option("--fastest", rally.fastest, "most of them, m/s")
+      ->check(CLI::Range(2.0, 100.0))
+      ->capture_default_str();
+  record->callback([command] { command->run(); });
+}
+
+}  // namespace kairos::experiments
