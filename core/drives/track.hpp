@@ -24,9 +24,9 @@ class Track : public Drive {
  public:
   struct Options {
     bool smooth = false;
-    double reach = 0.0;       ///< m; no point of the body is farther from its origin
-    std::string description;  ///< where it comes from
-    bool gestures = false;    ///< whether `TrackSample::closed` was told
+    double reach = 0.0;            ///< m; no point of the body is farther from its origin
+    std::string description = {};  ///< where it comes from
+    bool gestures = false;         ///< whether `TrackSample::closed` was told
   };
 
   /// At least one sample, times strictly increasing (asserted: the reader has refused others).

@@ -6,28 +6,29 @@
 namespace kairos::experiments {
 
 CrossingWatch::CrossingWatch(const Model& model) {
-  const auto add = [&](BodyIndex body, BodyIndex solid) {
-    if (!model.is_free(body) || model.is_free(solid) || model.is_field(solid)) {
-      return;
-    }
-    Gate gate;
-    gate.body = body;
-    gate.solid = solid;
-    if (const Box* box = std::get_if<Box>(&model.shape(solid))) {
-      box->half_extents.minCoeff(&gate.axis);
-      gate.reach = box->half_extents.array() + bounding_radius(model.shape(body));
-    } else if (std::holds_alternative<HalfSpace>(model.shape(solid))) {
-      gate.half_space = true;
-      gate.reach[gate.axis] = bounding_radius(model.shape(body));
-    } else {
-      return;  // a sphere has no other side
-    }
-    gates_.push_back(gate);
-  };
   for (const auto& [a, b] : model.pairs()) {
-    add(a, b);
-    add(b, a);
+    add(model, a, b);
+    add(model, b, a);
   }
+}
+
+void CrossingWatch::add(const Model& model, BodyIndex body, BodyIndex solid) {
+  if (!model.is_free(body) || model.is_free(solid) || model.is_field(solid)) {
+    return;
+  }
+  Gate gate;
+  gate.body = body;
+  gate.solid = solid;
+  if (const Box* box = std::get_if<Box>(&model.shape(solid))) {
+    box->half_extents.minCoeff(&gate.axis);
+    gate.reach = box->half_extents.array() + bounding_radius(model.shape(body));
+  } else if (std::holds_alternative<HalfSpace>(model.shape(solid))) {
+    gate.half_space = true;
+    gate.reach[gate.axis] = bounding_radius(model.shape(body));
+  } else {
+    return;  // a sphere has no other side
+  }
+  gates_.push_back(gate);
 }
 
 bool CrossingWatch::within_face(const Gate& gate, const Vector3& now) {

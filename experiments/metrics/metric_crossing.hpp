@@ -15,7 +15,10 @@ namespace kairos::experiments {
 /// within the box's face, widened by the body's size. Tunnelled: an odd number of crossings.
 class CrossingWatch {
  public:
+  /// Every free body and every solid that it may meet.
   explicit CrossingWatch(const Model& model);
+  /// One body and one solid.
+  CrossingWatch(const Model& model, BodyIndex body, BodyIndex solid) { add(model, body, solid); }
   void frame(const Frame& frame);
 
   [[nodiscard]] bool tunnelled() const;
@@ -34,6 +37,7 @@ class CrossingWatch {
     int side = 0;                     ///< on which the body was last clear: -1, 1; 0: nowhere yet
     std::int64_t crossings = 0;
   };
+  void add(const Model& model, BodyIndex body, BodyIndex solid);
   [[nodiscard]] static bool within_face(const Gate& gate, const Vector3& now);
   static void look(Gate& gate, const Vector3& now);
 

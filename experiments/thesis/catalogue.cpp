@@ -18,6 +18,7 @@ ThesisFigure flow_of_events();
 ThesisFigure get_and_give();
 ThesisFigure hierarchy();
 ThesisFigure class_diagram();
+ThesisFigure table_tennis();
 ThesisFigure sinking_ball();
 ThesisFigure swept_box_of_geometric();
 ThesisFigure improved_flow_of_events();
@@ -37,6 +38,7 @@ std::span<const ThesisFigure> thesis_figures() {
       thesis::get_and_give(),
       thesis::hierarchy(),
       thesis::class_diagram(),
+      thesis::table_tennis(),
       thesis::sinking_ball(),
       thesis::swept_box_of_geometric(),
       thesis::improved_flow_of_events(),

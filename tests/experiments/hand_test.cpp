@@ -95,7 +95,11 @@ class Frames : public Recorder {
   void frame(const Frame& frame) override {
     seen.push_back({frame.time.seconds, frame.bodies[1], frame.bodies[2], frame.in_hand[2] != 0});
   }
+  void event(const Event& event) override {
+    impacts_of_ball += event.kind == EventKind::impact && (event.a == 2 || event.b == 2) ? 1 : 0;
+  }
   std::vector<Seen> seen;
+  int impacts_of_ball = 0;
 };
 
 }  // namespace
@@ -108,10 +112,12 @@ TEST_CASE("hand: its closed fist carries the ball, through walls too", "[hand]")
     Frames frames;
     const RunResult result = experiments::simulate(model, choice, frames);
     CHECK(result.status == RunStatus::completed);
-    CHECK(result.cost.impacts == 0);
+    CHECK(frames.impacts_of_ball == 0);
+    // A frame is drawn before the events of the same instant are taken.
+    const bool drawn_first = choice.method.scheme == "event-driven";
     for (const Frames::Seen& f : frames.seen) {
       INFO(f.time);
-      if (f.time < 0.25) {
+      if (f.time < 0.25 || (f.time == 0.25 && drawn_first)) {
         CHECK_FALSE(f.in_hand);
         CHECK(f.ball.pose.position.x() == -3.0);
       } else if (f.time < 1.0) {

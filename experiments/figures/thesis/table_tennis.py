@@ -1,0 +1,69 @@
+"""Rallies by every method: passes, penetrating frames, the nudge, and the speed that 13.8 tells."""
+
+import matplotlib.pyplot as plt
+
+import style
+from data import pick
+
+
+def draw(data, figures):
+    rows = data.rows("methods")
+    figure, ((passed, frames), (nudge, speeds)) = plt.subplots(2, 2, figsize=(10.6, 8.2))
+    shown = [row for row in rows if row["reading"] != "prose"]
+    intervals(passed, shown, "passed", 100, "strokes that pass through the ball / %")
+    intervals(frames, shown, "frames", 1, "frames per stroke with the ball inside the bat")
+    frames.set_yticklabels([])
+    draw_nudge(nudge, rows)
+    draw_speeds(speeds, data.rows("speeds"))
+    passed.set_title("Passed")
+    frames.set_title("Penetrating frames")
+    nudge.set_title("The nudge of 7.4")
+    speeds.set_title("The bat's speed as 13.8 tells it")
+    figures.save(figure, "table-tennis", data.entry("caption"))
+
+
+def intervals(panel, rows, column, factor, label):
+    places = list(range(len(rows)))[::-1]
+    for place, row in zip(places, rows):
+        low, middle, high = (factor * row[column + end] for end in ("_low", "", "_high"))
+        panel.plot([low, high], [place, place], color=style.COLOURS[0], linewidth=1.6)
+        panel.plot(middle, place, "o", color=style.COLOURS[0], markerfacecolor="white")
+    panel.set_yticks(places, [str(row["method"]) for row in rows])
+    panel.set_xlim(left=-0.02 * panel.get_xlim()[1])
+    panel.set_xlabel(label)
+
+
+def draw_nudge(panel, rows):
+    nothing = pick(rows, method="original")[0]
+    for i, (reading, label) in enumerate((("13.9", "along v′ − v (13.9)"),
+                                          ("prose", "along v′ (prose)"))):
+        of_reading = [nothing] + [row for row in rows if row["reading"] == reading]
+        factors = [1000 * row["nudge"] for row in of_reading]
+        look = {"marker": style.MARKERS[i], "linestyle": style.DASHES[i],
+                "markerfacecolor": "white"}
+        for column, colour, what in (("penetrated", 0, "penetrate"), ("passed", 1, "pass")):
+            panel.plot(factors, [100 * row[column] for row in of_reading],
+                       color=style.COLOURS[colour], label=f"strokes that {what}, {label}", **look)
+        panel.plot(factors, [100 * row["jumps"] for row in of_reading], color=style.COLOURS[2],
+                   label=f"hits that jump by > 4 cm, {label}", **look)
+    panel.axvline(2.5, **style.PREDICTION)
+    panel.text(2.7, 97, "0.0025, the thesis' value", fontsize=8.5, va="top")
+    panel.set_xlabel("factor of the nudge / ms")
+    panel.set_ylabel("share / %")
+    panel.set_ylim(-3, 103)
+    panel.legend(loc="center right", fontsize=7.5)
+
+
+def draw_speeds(panel, rows):
+    rows = [row for row in rows if row["frames"] and row["truth"] is not None]
+    truth = [max(row["truth"], 1e-3) for row in rows]
+    panel.fill_between(truth, [row["q1"] for row in rows], [row["q3"] for row in rows],
+                       color=style.COLOURS[0], alpha=0.15, linewidth=0)
+    panel.plot(truth, [row["told"] for row in rows], color=style.COLOURS[0], marker="o",
+               markerfacecolor="white", label="told by 13.8 (median, quartiles)")
+    panel.plot([1e-3, 10], [1e-3, 10], label="the truth", **style.PREDICTION)
+    panel.set_xscale("log")
+    panel.set_yscale("log")
+    panel.set_xlabel("true speed / (m/s)")
+    panel.set_ylabel("speed told / (m/s)")
+    panel.legend(loc="upper left")

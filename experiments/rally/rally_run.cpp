@@ -1,0 +1,79 @@
+#include "experiments/rally/rally_run.hpp"
+
+#include "core/error.hpp"
+#include "experiments/scene_library.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace kairos::experiments {
+namespace {
+
+/// A body of the scene follows a recording, as `[body.drive] track` would make it.
+void follow(Scene& scene, const std::string& name, const Recording& recording) {
+  const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(),
+                                 [&](const Body& b) { return b.name == name; });
+  std::vector<TrackSample> samples = recording.samples;
+  for (TrackSample& sample : samples) {
+    sample.pose.orientation.normalize();  // the files hold seven digits
+  }
+  const double reach = bounding_radius(bounding_box(body->shape));
+  body->drive = std::make_shared<const Track>(
+      std::move(samples), Track::Options{.reach = reach, .gestures = recording.gestures});
+  const Motion motion = body->drive->motion(Instant{}, 1.0);
+  body->initial = {motion.pose(0.0), motion.twist(0.0)};
+}
+
+RallyMethod thesis_with(std::string name, const char* scheme, const char* detector) {
+  return {.name = std::move(name),
+          .choice = {.method = {scheme, "thesis-euler", detector, "thesis"}}};
+}
+
+}  // namespace
+
+std::vector<RallyMethod> rally_methods() {
+  std::vector<RallyMethod> methods{thesis_with("original", "original", "sat")};
+  for (const double factor : {0.001, 0.0025, 0.005, 0.01, 0.02}) {
+    methods.push_back(thesis_with(fmt::format("original, nudge {}", factor), "original", "sat"));
+    methods.back().nudge = factor;
+  }
+  for (const double factor : {0.001, 0.0025, 0.005, 0.01, 0.02}) {
+    methods.push_back(
+        thesis_with(fmt::format("original, nudge {} (prose)", factor), "original", "sat"));
+    methods.back().nudge_prose = factor;
+  }
+  methods.push_back(thesis_with("geometric", "geometric", "bisection"));
+  // Bat and ball are 5.5 cm through: all of it, half of it, a fifth of it.
+  for (const bool equal : {false, true}) {
+    for (const double threshold : {0.055, 0.0275, 0.011}) {
+      methods.push_back(
+          thesis_with(fmt::format("{}substepped, {} m", equal ? "equal " : "", threshold),
+                      "substepped", "sat"));
+      methods.back().choice.threshold = threshold;
+      methods.back().choice.equal_substeps = equal;
+    }
+  }
+  methods.push_back(thesis_with("bisected", "bisected", "bisection"));
+  methods.push_back({.name = "event-driven", .choice = {}});
+  return methods;
+}
+
+Scene rally_scene(const RallyRecording& rally, const RallyMethod& method) {
+  Scene scene = read_scene(find_scene("table-tennis"),
+                           {{"body.bat.nudge", fmt::format("{}", method.nudge)},
+                            {"body.bat.nudge_prose", fmt::format("{}", method.nudge_prose)},
+                            {"duration", fmt::format("{}", rally.duration())}});
+  follow(scene, "bat", rally.bat);
+  follow(scene, "hand", rally.hand);
+  return scene;
+}
+
+RallyOutcome play(const RallyRecording& rally, const RallyMethod& method) {
+  const Model model(rally_scene(rally, method));
+  StrokeWatch watch(rally);
+  const RunResult result = simulate(model, method.choice, watch);
+  return {result.status, result.reason, watch.strokes(), watch.speeds()};
+}
+
+}  // namespace kairos::experiments

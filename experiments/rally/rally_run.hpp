@@ -1,0 +1,35 @@
+#pragma once
+
+#include "core/scene.hpp"
+#include "experiments/rally/stroke_watch.hpp"
+#include "experiments/simulation.hpp"
+
+#include <string>
+#include <vector>
+
+namespace kairos::experiments {
+
+/// One way to play a rally: a method, and what the bat does to what it hits.
+struct RallyMethod {
+  std::string name;
+  RunChoice choice;
+  double nudge = 0.0;        ///< s, 13.9
+  double nudge_prose = 0.0;  ///< s, 7.4
+};
+
+/// What is asked on `table-tennis`: the thesis' scheme without and with the nudge (at five factors,
+/// in both readings), and its cures.
+[[nodiscard]] std::vector<RallyMethod> rally_methods();
+
+/// The scene `table-tennis` with these recordings in place of its own.
+[[nodiscard]] Scene rally_scene(const RallyRecording& rally, const RallyMethod& method);
+
+struct RallyOutcome {
+  RunStatus status = RunStatus::completed;
+  std::string reason;
+  std::vector<StrokeOutcome> strokes;
+  std::vector<SpeedReading> speeds;
+};
+[[nodiscard]] RallyOutcome play(const RallyRecording& rally, const RallyMethod& method);
+
+}  // namespace kairos::experiments
