@@ -7,12 +7,12 @@ namespace kairos::experiments {
 
 CrossingWatch::CrossingWatch(const Model& model) {
   for (const auto& [a, b] : model.pairs()) {
-    add(model, a, b);
-    add(model, b, a);
+    add(model, a, b, bounding_radius(model.shape(a)));
+    add(model, b, a, bounding_radius(model.shape(b)));
   }
 }
 
-void CrossingWatch::add(const Model& model, BodyIndex body, BodyIndex solid) {
+void CrossingWatch::add(const Model& model, BodyIndex body, BodyIndex solid, double widening) {
   if (!model.is_free(body) || model.is_free(solid) || model.is_field(solid)) {
     return;
   }
@@ -21,10 +21,11 @@ void CrossingWatch::add(const Model& model, BodyIndex body, BodyIndex solid) {
   gate.solid = solid;
   if (const Box* box = std::get_if<Box>(&model.shape(solid))) {
     box->half_extents.minCoeff(&gate.axis);
-    gate.reach = box->half_extents.array() + bounding_radius(model.shape(body));
+    gate.clear = box->half_extents[gate.axis] + bounding_radius(model.shape(body));
+    gate.face = box->half_extents.array() + widening;
   } else if (std::holds_alternative<HalfSpace>(model.shape(solid))) {
     gate.half_space = true;
-    gate.reach[gate.axis] = bounding_radius(model.shape(body));
+    gate.clear = bounding_radius(model.shape(body));
   } else {
     return;  // a sphere has no other side
   }
@@ -35,7 +36,7 @@ bool CrossingWatch::within_face(const Gate& gate, const Vector3& now) {
   const double before = gate.last[gate.axis];
   const Vector3 at = gate.last + (now - gate.last) * (before / (before - now[gate.axis]));
   for (int i = 0; i < 3; ++i) {
-    if (!gate.half_space && i != gate.axis && std::abs(at[i]) > gate.reach[i]) {
+    if (!gate.half_space && i != gate.axis && std::abs(at[i]) > gate.face[i]) {
       return false;
     }
   }
@@ -46,7 +47,7 @@ void CrossingWatch::look(Gate& gate, const Vector3& now) {
   if (gate.side != 0 && (gate.last[gate.axis] < 0.0) != (now[gate.axis] < 0.0)) {
     gate.within_face = within_face(gate, now);
   }
-  if (std::abs(now[gate.axis]) > gate.reach[gate.axis]) {
+  if (std::abs(now[gate.axis]) > gate.clear) {
     const int side = now[gate.axis] < 0.0 ? -1 : 1;
     gate.crossings += gate.side == -side && gate.within_face ? 1 : 0;
     gate.side = side;

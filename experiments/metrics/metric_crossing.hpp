@@ -17,8 +17,11 @@ class CrossingWatch {
  public:
   /// Every free body and every solid that it may meet.
   explicit CrossingWatch(const Model& model);
-  /// One body and one solid.
-  CrossingWatch(const Model& model, BodyIndex body, BodyIndex solid) { add(model, body, solid); }
+  /// One body and one solid, whose face is not widened: a ball that brushes past its edge has not
+  /// gone through.
+  CrossingWatch(const Model& model, BodyIndex body, BodyIndex solid) {
+    add(model, body, solid, 0.0);
+  }
   void frame(const Frame& frame);
 
   [[nodiscard]] bool tunnelled() const;
@@ -31,13 +34,14 @@ class CrossingWatch {
     BodyIndex solid = 0;
     int axis = 1;  ///< of the solid's frame
     bool half_space = false;
-    Vector3 reach = Vector3::Zero();  ///< half-extents of the face plus the body's radius, m
-    Vector3 last = Vector3::Zero();   ///< centre in the solid's frame, last frame
-    bool within_face = false;         ///< where the centre last changed sides
-    int side = 0;                     ///< on which the body was last clear: -1, 1; 0: nowhere yet
+    double clear = 0.0;              ///< from here on along the axis it is clear, m
+    Vector3 face = Vector3::Zero();  ///< half-extents of the face, widened, m
+    Vector3 last = Vector3::Zero();  ///< centre in the solid's frame, last frame
+    bool within_face = false;        ///< where the centre last changed sides
+    int side = 0;                    ///< on which the body was last clear: -1, 1; 0: nowhere yet
     std::int64_t crossings = 0;
   };
-  void add(const Model& model, BodyIndex body, BodyIndex solid);
+  void add(const Model& model, BodyIndex body, BodyIndex solid, double widening);
   [[nodiscard]] static bool within_face(const Gate& gate, const Vector3& now);
   static void look(Gate& gate, const Vector3& now);
 

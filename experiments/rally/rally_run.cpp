@@ -30,19 +30,29 @@ RallyMethod thesis_with(std::string name, const char* scheme, const char* detect
           .choice = {.method = {scheme, "thesis-euler", detector, "thesis"}}};
 }
 
+/// `original` without the nudge, and with it at five factors in both readings.
+void add_nudges(const std::string& name, double bat_mass, std::vector<RallyMethod>& methods) {
+  const auto add = [&](const std::string& more) -> RallyMethod& {
+    methods.push_back(thesis_with(name + more, "original", "sat"));
+    methods.back().bat_mass = bat_mass;
+    return methods.back();
+  };
+  constexpr double factors[] = {0.001, 0.0025, 0.005, 0.01, 0.02};
+  add("");
+  for (const double factor : factors) {
+    add(fmt::format(", nudge {}", factor)).nudge = factor;
+  }
+  for (const double factor : factors) {
+    add(fmt::format(", nudge {} (prose)", factor)).nudge_prose = factor;
+  }
+}
+
 }  // namespace
 
 std::vector<RallyMethod> rally_methods() {
-  std::vector<RallyMethod> methods{thesis_with("original", "original", "sat")};
-  for (const double factor : {0.001, 0.0025, 0.005, 0.01, 0.02}) {
-    methods.push_back(thesis_with(fmt::format("original, nudge {}", factor), "original", "sat"));
-    methods.back().nudge = factor;
-  }
-  for (const double factor : {0.001, 0.0025, 0.005, 0.01, 0.02}) {
-    methods.push_back(
-        thesis_with(fmt::format("original, nudge {} (prose)", factor), "original", "sat"));
-    methods.back().nudge_prose = factor;
-  }
+  std::vector<RallyMethod> methods;
+  add_nudges("original", 0.18, methods);
+  add_nudges("original, equal masses", 0.0027, methods);
   methods.push_back(thesis_with("geometric", "geometric", "bisection"));
   // Bat and ball are 5.5 cm through: all of it, half of it, a fifth of it.
   for (const bool equal : {false, true}) {
@@ -63,6 +73,7 @@ Scene rally_scene(const RallyRecording& rally, const RallyMethod& method) {
   Scene scene = read_scene(find_scene("table-tennis"),
                            {{"body.bat.nudge", fmt::format("{}", method.nudge)},
                             {"body.bat.nudge_prose", fmt::format("{}", method.nudge_prose)},
+                            {"body.bat.mass", fmt::format("{}", method.bat_mass)},
                             {"duration", fmt::format("{}", rally.duration())}});
   follow(scene, "bat", rally.bat);
   follow(scene, "hand", rally.hand);

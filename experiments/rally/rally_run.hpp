@@ -15,10 +15,11 @@ struct RallyMethod {
   RunChoice choice;
   double nudge = 0.0;        ///< s, 13.9
   double nudge_prose = 0.0;  ///< s, 7.4
+  double bat_mass = 0.18;    ///< kg
 };
 
 /// What is asked on `table-tennis`: the thesis' scheme without and with the nudge (at five factors,
-/// in both readings), and its cures.
+/// in both readings), the same with a bat as heavy as the ball, and its cures.
 [[nodiscard]] std::vector<RallyMethod> rally_methods();
 
 /// The scene `table-tennis` with these recordings in place of its own.

@@ -9,7 +9,8 @@ from data import pick
 def draw(data, figures):
     rows = data.rows("methods")
     figure, ((passed, frames), (nudge, speeds)) = plt.subplots(2, 2, figsize=(10.6, 8.2))
-    shown = [row for row in rows if row["reading"] != "prose"]
+    shown = [row for row in rows if row["reading"] != "prose"
+             and not ("equal masses" in row["method"] and row["reading"])]
     intervals(passed, shown, "passed", 100, "strokes that pass through the ball / %")
     intervals(frames, shown, "frames", 1, "frames per stroke with the ball inside the bat")
     frames.set_yticklabels([])
@@ -34,24 +35,35 @@ def intervals(panel, rows, column, factor, label):
 
 
 def draw_nudge(panel, rows):
-    nothing = pick(rows, method="original")[0]
-    for i, (reading, label) in enumerate((("13.9", "along v′ − v (13.9)"),
-                                          ("prose", "along v′ (prose)"))):
-        of_reading = [nothing] + [row for row in rows if row["reading"] == reading]
+    light = pick(rows, method="original, equal masses")[0]
+    heavy = pick(rows, method="original")[0]
+    for i, (nothing, reading, label) in enumerate((
+            (light, "change", "equal masses, along v′ − v"),
+            (light, "prose", "equal masses, along v′"),
+            (heavy, "change", "heavy bat, along v′ − v"))):
+        of_reading = [nothing] + pick(rows, bat=nothing["bat"], reading=reading)
         factors = [1000 * row["nudge"] for row in of_reading]
-        look = {"marker": style.MARKERS[i], "linestyle": style.DASHES[i],
-                "markerfacecolor": "white"}
-        for column, colour, what in (("penetrated", 0, "penetrate"), ("passed", 1, "pass")):
-            panel.plot(factors, [100 * row[column] for row in of_reading],
-                       color=style.COLOURS[colour], label=f"strokes that {what}, {label}", **look)
-        panel.plot(factors, [100 * row["jumps"] for row in of_reading], color=style.COLOURS[2],
-                   label=f"hits that jump by > 4 cm, {label}", **look)
+        panel.plot(factors, [row["frames"] for row in of_reading], color=style.COLOURS[i],
+                   marker=style.MARKERS[i], linestyle=style.DASHES[i], markerfacecolor="white",
+                   label=label)
     panel.axvline(2.5, **style.PREDICTION)
-    panel.text(2.7, 97, "0.0025, the thesis' value", fontsize=8.5, va="top")
     panel.set_xlabel("factor of the nudge / ms")
-    panel.set_ylabel("share / %")
-    panel.set_ylim(-3, 103)
-    panel.legend(loc="center right", fontsize=7.5)
+    panel.set_ylabel("penetrating frames per stroke")
+    panel.set_ylim(bottom=0)
+    jumps = panel.twinx()
+    of_reading = [heavy] + pick(rows, bat=heavy["bat"], reading="change")
+    jumps.plot([1000 * row["nudge"] for row in of_reading],
+               [100 * row["jumps"] for row in of_reading], color="#888888", linestyle=":",
+               marker="*", label="hits that jump by > 4 cm, heavy bat")
+    jumps.set_ylabel("visible jumps / % of hits")
+    jumps.set_ylim(-2, 102)
+    jumps.grid(False)
+    jumps.spines["right"].set_visible(True)
+    panel.text(2.9, 0.05, "0.0025", fontsize=8.5)
+    handles = [axis.get_legend_handles_labels() for axis in (panel, jumps)]
+    panel.legend(handles[0][0] + handles[1][0], handles[0][1] + handles[1][1],
+                 loc="upper center", fontsize=7.5)
+    panel.set_ylim(top=1.45 * panel.get_ylim()[1])
 
 
 def draw_speeds(panel, rows):
