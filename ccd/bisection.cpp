@@ -12,7 +12,7 @@
 namespace kairos::ccd {
 namespace {
 
-constexpr int most_looks = 1'000'000;  ///< of one query; what is beyond is `undecided`
+constexpr int most_looks = 20'000;  ///< of one query; what is beyond is `undecided`
 
 /// One query: the shapes at any time of the window.
 class Bisection {

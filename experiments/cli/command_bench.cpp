@@ -1,38 +1,73 @@
+#include "experiments/accuracy/accuracy.hpp"
 #include "experiments/bench/bench.hpp"
 #include "experiments/cli/commands.hpp"
+#include "experiments/run_error.hpp"
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include <memory>
 #include <string>
 
 namespace kairos::experiments {
 
+namespace {
+
+struct BenchCommand {
+  std::string name;
+  int rounds = 3;
+  std::size_t pairs = std::size_t{1} << 18;  // more than a branch predictor learns
+  AccuracyOptions accuracy;
+
+  void run() const {
+    if (name == "accuracy") {
+      const std::size_t broken = measure_accuracy(accuracy);
+      if (broken > 0) {
+        throw RunError(fmt::format("{} answers break a promise", broken));
+      }
+      return;
+    }
+    if (name != "ccd") {
+      bench_stepping(rounds);
+    }
+    if (name != "bounce") {
+      bench_queries(pairs, rounds);
+    }
+  }
+};
+
+}  // namespace
+
 void add_bench_command(CLI::App& app) {
-  struct BenchCommand {
-    std::string name;
-    int rounds = 3;
-    std::size_t pairs = std::size_t{1} << 18;  // more than a branch predictor learns
-  };
   const auto options = std::make_shared<BenchCommand>();
   CLI::App* bench = app.add_subcommand(
       "bench", "Time it: ratios within one run, interleaved, the least of several rounds");
-  bench->add_option("name", options->name, "bounce or ccd; without it both")
-      ->check(CLI::IsMember({"bounce", "ccd"}));
+  bench
+      ->add_option("name", options->name,
+                   "bounce or ccd: times; without it both; accuracy: answers against a reference")
+      ->check(CLI::IsMember({"bounce", "ccd", "accuracy"}));
   bench->add_option("--rounds", options->rounds, "how often each is timed")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   bench->add_option("--pairs", options->pairs, "ccd: how many distinct pairs")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 22))
       ->capture_default_str();
-  bench->callback([options] {
-    if (options->name != "ccd") {
-      bench_stepping(options->rounds);
-    }
-    if (options->name != "bounce") {
-      bench_queries(options->pairs, options->rounds);
-    }
-  });
+  AccuracyOptions& accuracy = options->accuracy;
+  bench->add_option("--queries", accuracy.queries, "accuracy: how many")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000'000}))
+      ->capture_default_str();
+  bench->add_option("--seed", accuracy.seed, "accuracy: of the queries")->capture_default_str();
+  bench->add_option("--detector", accuracy.detectors, "accuracy: these only")->type_name("D...");
+  bench
+      ->add_option("--judge-every", accuracy.judge_every,
+                   "accuracy: hold only one in N against the reference")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000'000}))
+      ->type_name("N");
+  bench->add_option("--threads", accuracy.threads, "accuracy: how many (default: one per core)")
+      ->check(CLI::Range(std::size_t{0}, std::size_t{1024}));
+  bench->add_option("--out", accuracy.out, "accuracy: folder for accuracy.csv and queries.csv")
+      ->type_name("DIR");
+  bench->callback([options] { options->run(); });
 }
 
 }  // namespace kairos::experiments

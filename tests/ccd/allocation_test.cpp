@@ -3,7 +3,7 @@
 #include "ccd/conservative_advancement.hpp"
 #include "tests/allocations.hpp"
 #include "tests/catch.hpp"
-#include "tests/ccd/random_queries.hpp"
+#include "experiments/accuracy/random_query.hpp"
 
 using namespace kairos;
 using namespace kairos::reference;

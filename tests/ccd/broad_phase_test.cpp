@@ -4,7 +4,7 @@
 #include "ccd/dynamic_tree.hpp"
 #include "ccd/sweep_and_prune.hpp"
 #include "tests/catch.hpp"
-#include "tests/ccd/reference.hpp"
+#include "experiments/accuracy/reference.hpp"
 
 #include <algorithm>
 

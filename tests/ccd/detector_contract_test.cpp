@@ -4,7 +4,7 @@
 #include "ccd/conservative_advancement.hpp"
 #include "ccd/sat.hpp"
 #include "tests/catch.hpp"
-#include "tests/ccd/random_queries.hpp"
+#include "experiments/accuracy/random_query.hpp"
 
 #include <memory>
 #include <numbers>

@@ -3,7 +3,7 @@
 // makes it longer; the seed of a failure is in its message.
 #include "ccd/certified.hpp"
 #include "tests/catch.hpp"
-#include "tests/ccd/random_queries.hpp"
+#include "experiments/accuracy/random_query.hpp"
 
 #include <cstdlib>
 

@@ -2,7 +2,7 @@
 // against everything that `certified` promises.
 #include "ccd/bisection.hpp"
 #include "ccd/certified.hpp"
-#include "tests/ccd/queries.hpp"
+#include "experiments/accuracy/query.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 #include <cstring>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ccd/advancement.hpp"
-#include "tests/ccd/reference.hpp"
+#include "experiments/accuracy/reference.hpp"
 
 #include <string>
 

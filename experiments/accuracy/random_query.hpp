@@ -1,12 +1,25 @@
 #pragma once
 
-#include "tests/ccd/queries.hpp"
+#include "experiments/accuracy/query.hpp"
 
 namespace kairos::reference {
 
 /// Classes of difficulty; a query is repeated from its class, kinds of shapes and seed.
-enum class Difficulty { straight, turning, spinning, scaled, far_away, all_turning, polynomial };
-inline constexpr int difficulties = 7;
+enum class Difficulty {
+  straight,     ///< parabolas, nothing turns
+  turning,      ///< up to 3 rad/s about each axis
+  spinning,     ///< up to 60 rad/s about each axis
+  scaled,       ///< sizes from 1e-9 to 1e9 m
+  far_away,     ///< 1e6 m from the origin
+  all_turning,  ///< half-spaces turn as well
+  polynomial,   ///< degree 5, quaternion polynomials of degree 4
+  thin,         ///< one extent of each box is 1e-6 of the others
+  unequal,      ///< the first is 1e-9 to 1e-3 of the size of the second
+};
+inline constexpr int difficulties = 9;
+inline constexpr const char* difficulty_names[] = {"straight",   "turning",  "spinning",
+                                                   "scaled",     "far-away", "all-turning",
+                                                   "polynomial", "thin",     "unequal"};
 
 struct ShapeKinds {
   int a, b;  ///< 0 sphere, 1 box, 2 half-space
@@ -50,7 +63,14 @@ inline Query random_query(Difficulty difficulty, ShapeKinds kinds, std::uint64_t
   const double w = difficulty == Difficulty::straight   ? 0.0
                    : difficulty == Difficulty::spinning ? 60.0
                                                         : 3.0;
-  Query q{random_shape(random, kinds.a, size), random_shape(random, kinds.b, size), {}, {}, 1.0};
+  const double size_a = difficulty == Difficulty::unequal ? random.log_uniform(1e-9, 1e-3) : size;
+  Query q{random_shape(random, kinds.a, size_a), random_shape(random, kinds.b, size), {}, {}, 1.0};
+  for (Shape* shape : {&q.a, &q.b}) {
+    auto* thin = std::get_if<Box>(shape);
+    if (thin != nullptr && difficulty == Difficulty::thin) {
+      thin->half_extents[random.below(3)] *= 1e-6;
+    }
+  }
   const Vector3 away = random.direction();
   Pose at_a{offset + random.vector(0.5 * size), random.orientation()};
   Pose at_b{offset + size * random.uniform(2.0, 5.0) * away, random.orientation()};
