@@ -48,13 +48,13 @@ std::vector<std::string> shipped_scenes() {
 }
 
 std::string find_scene(const std::string& path_or_name) {
-  std::error_code error;
-  if (fs::exists(path_or_name, error) && !fs::is_directory(path_or_name, error)) {
-    return path_or_name;
-  }
   const std::vector<std::string> names = shipped_scenes();
   if (std::find(names.begin(), names.end(), path_or_name) != names.end()) {
     return (fs::path(scene_folder()) / (path_or_name + ".toml")).string();
+  }
+  std::error_code error;
+  if (fs::exists(path_or_name, error) && !fs::is_directory(path_or_name, error)) {
+    return path_or_name;
   }
   const std::vector<std::string_view> views(names.begin(), names.end());
   throw InputError(

@@ -10,7 +10,8 @@ namespace kairos::experiments {
 [[nodiscard]] std::string scene_folder();
 /// Names of the shipped scenes, in alphabetical order.
 [[nodiscard]] std::vector<std::string> shipped_scenes();
-/// The file that a person means: a path, or the bare name of a shipped scene. Throws `InputError`.
+/// The file that a person means: the bare name of a shipped scene, or a path. A name means the same
+/// in every folder: a file that happens to have it is written `./name`. Throws `InputError`.
 [[nodiscard]] std::string find_scene(const std::string& path_or_name);
 
 }  // namespace kairos::experiments

@@ -105,11 +105,16 @@ std::string errata_html(const ReportEntry& entry) {
   const auto text = [&](std::size_t row, const char* column) {
     return to_text(table.rows[row][table.column(column)]);
   };
+  const auto agreement = [&](std::size_t row) {
+    const std::string tolerance = text(row, "tolerance");
+    const std::string kind = html(text(row, "kind"));
+    return tolerance == "0" ? kind : readable(tolerance) + " (" + kind + ")";
+  };
   std::string out =
       "<div class=\"scroll\"><table class=\"errata\"><thead><tr><th></th><th "
       "class=\"text\">measured by a "
       "run</th><th></th><th>predicted</th><th>measured</th><th>unit</th>"
-      "<th>verdict</th></tr></thead>\n";
+      "<th>agree to</th><th>verdict</th></tr></thead>\n";
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const std::string id = text(i, "id");
     if (i == 0 || text(i - 1, "id") != id) {
@@ -122,7 +127,7 @@ std::string errata_html(const ReportEntry& entry) {
       }
       const std::string section = text(i, "section");
       out += fmt::format(
-          "<tr class=\"statement\"><th>{}</th><td class=\"text\" colspan=\"6\"><b>Thesis{}:</b> "
+          "<tr class=\"statement\"><th>{}</th><td class=\"text\" colspan=\"7\"><b>Thesis{}:</b> "
           "{}. "
           "<b>Reading:</b> {}. <span class=\"test\">Test: {}</span></td></tr>\n",
           html(id), section == "—" ? "" : " " + html(section),
@@ -131,10 +136,10 @@ std::string errata_html(const ReportEntry& entry) {
     }
     out += fmt::format(
         "<tr><td></td><td class=\"text\">{}</td><td>{}</td><td>{}</td><td>{}</td><td "
-        "class=\"text\">{}</td><td class=\"{}\">{}</td></tr>\n",
+        "class=\"unit\">{}</td><td class=\"unit\">{}</td><td class=\"{}\">{}</td></tr>\n",
         html(text(i, "quantity")), html(text(i, "relation")), readable(text(i, "predicted")),
-        readable(text(i, "measured")), html(text(i, "unit")), html(text(i, "verdict")),
-        html(text(i, "verdict")));
+        readable(text(i, "measured")), html(text(i, "unit")), agreement(i),
+        html(text(i, "verdict")), html(text(i, "verdict")));
   }
   return out + "</tbody></table></div>\n";
 }

@@ -62,13 +62,13 @@ std::vector<std::string> shipped_experiments() {
 }
 
 std::string find_experiment(const std::string& path_or_name) {
-  std::error_code error;
-  if (fs::is_regular_file(path_or_name, error)) {
-    return path_or_name;
-  }
   const std::vector<std::string> names = shipped_experiments();
   if (std::find(names.begin(), names.end(), path_or_name) != names.end()) {
     return (fs::path(data_folder("specs")) / (path_or_name + ".toml")).string();
+  }
+  std::error_code error;
+  if (fs::is_regular_file(path_or_name, error)) {
+    return path_or_name;
   }
   const std::vector<std::string_view> views(names.begin(), names.end());
   throw InputError(path_or_name, 0, "",

@@ -7,7 +7,7 @@ namespace kairos::experiments {
 
 /// Names of the shipped experiments, in the order of the report.
 [[nodiscard]] std::vector<std::string> shipped_experiments();
-/// The spec that a person means: a path, or the name of a shipped experiment. Throws `InputError`.
+/// The spec that a person means: the name of a shipped experiment, or a path. Throws `InputError`.
 [[nodiscard]] std::string find_experiment(const std::string& path_or_name);
 /// Folder of the scripts that draw figures; empty if there is none.
 [[nodiscard]] std::string figure_folder();
