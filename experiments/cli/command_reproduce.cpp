@@ -110,10 +110,13 @@ void ReproduceCommand::run() const {
   for (const ExperimentSpec& spec : specs) {
     make(spec, report / spec.name);
   }
-  const std::string page = write_report(report.string());
+  const Report page = write_report(report.string());
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  fmt::print("In all {:.1f} s. The report: {}\n", seconds, page);
+  fmt::print("In all {:.1f} s. The report: {}\n", seconds, page.path);
+  if (only.empty() && !page.holes.empty()) {
+    fmt::print(stderr, "paper: not made: {}\n", fmt::join(page.holes, ", "));
+  }
 }
 
 }  // namespace

@@ -163,6 +163,7 @@ class Page {
         versions_html(entries_.front()));
     return out + "</main></div></body></html>\n";
   }
+  [[nodiscard]] const std::vector<std::string>& holes() const { return paper_.holes; }
 
  private:
   void add_group(const char* title) {
@@ -250,14 +251,15 @@ class Page {
 
 }  // namespace
 
-std::string write_report(const std::string& folder) {
+Report write_report(const std::string& folder) {
   const Entries entries = read_report_entries(folder);
   if (entries.empty()) {
     throw InputError(folder, 0, "", "holds no experiment; run one with --out inside it first");
   }
   const std::string path = (fs::path(folder) / "index.html").string();
-  write_file(path, Page(entries).write());
-  return path;
+  Page page(entries);
+  write_file(path, page.write());
+  return {path, page.holes()};
 }
 
 }  // namespace kairos::experiments

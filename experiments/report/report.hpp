@@ -1,13 +1,20 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace kairos::experiments {
 
-/// Writes `index.html` into a folder whose subfolders are experiments (as `run_experiment` leaves
-/// them): what was asked, figures with captions, the tables behind them, the commands, seeds and
-/// versions. The page needs nothing from outside the folder. Throws `InputError` where there is
-/// no experiment, `RunError` where it cannot be written. Returns the path of the page.
-std::string write_report(const std::string& folder);
+struct Report {
+  std::string path;                ///< of the page
+  std::vector<std::string> holes;  ///< what the paper quotes and was not made
+};
+
+/// Writes `index.html` into a folder whose subfolders are figures of the thesis and experiments (as
+/// `make_figure` and `run_experiment` leave them): the thesis chapter by chapter, its errata, the
+/// experiments, and the paper with its numbers filled in; each figure with caption, command and
+/// data. The page needs nothing from outside the folder. Throws `InputError` where there is
+/// nothing to report, `RunError` where it cannot be written.
+Report write_report(const std::string& folder);
 
 }  // namespace kairos::experiments

@@ -3,12 +3,17 @@
 #include "experiments/report/report.hpp"
 
 #include "core/error.hpp"
+#include "experiments/report/bibliography.hpp"
+#include "experiments/report/markdown.hpp"
+#include "experiments/report/paper.hpp"
 #include "experiments/report/report_html.hpp"
 #include "experiments/sweeps/experiment.hpp"
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
 
+#include <set>
 #include <string>
+#include <vector>
 
 using namespace kairos::experiments;
 using kairos::tests::read_all;
@@ -35,7 +40,7 @@ metrics = ["tunnelled", "impacts"]
   (void)run_experiment(read_experiment(spec, Size::quick),
                        {Size::quick, 1, "kairos sweep mine.toml --quick"},
                        folder.path("report/mine"));
-  const std::string page = read_all(write_report(folder.path("report")));
+  const std::string page = read_all(write_report(folder.path("report")).path);
   CHECK(has(page, "Mine &amp; &lt;yours&gt;"));
   CHECK(has(page, "Does it &quot;work&quot;?"));
   CHECK(has(page, "kairos sweep mine.toml --quick"));
@@ -59,4 +64,73 @@ TEST_CASE("a folder without experiments has no report", "[report]") {
 
 TEST_CASE("text cannot become markup", "[report]") {
   CHECK(html("<b>\"&\"</b>") == "&lt;b&gt;&quot;&amp;&quot;&lt;/b&gt;");
+}
+
+TEST_CASE("the Markdown of the paper: headings, lists, marks, and nothing passes as markup",
+          "[report]") {
+  std::vector<std::string> asked;
+  const Placeholder placeholder = [&asked](std::string_view kind, std::string_view what) {
+    asked.push_back(std::string(kind) + ":" + std::string(what));
+    return std::string("<i>42</i>");
+  };
+  const MarkdownPage page = markdown_html(
+      "# Title\n\n## A <part>\n\nOne *two* **three**\n`4 < 5` {{value:a.b}}\nsee [@X; @Y].\n\n"
+      "- first\n  goes on\n- second\n\n1. one\n\n{{figure:f}}\n\n```\n<code>\n```\nEnd * here.\n",
+      "p-", placeholder);
+  CHECK(page.html ==
+        "<h3 id=\"p-a-part-\">A &lt;part&gt;</h3>\n"
+        "<p>One <em>two</em> <strong>three</strong> <code>4 &lt; 5</code> <i>42</i> see "
+        "[<i>42</i>, <i>42</i>].</p>\n"
+        "<ul>\n<li>first goes on</li>\n<li>second</li>\n</ul>\n<ol>\n<li>one</li>\n</ol>\n"
+        "<i>42</i><pre><code>&lt;code&gt;\n</code></pre>\n<p>End * here.</p>\n");
+  CHECK(asked == std::vector<std::string>{"value:a.b", "cite:X", "cite:Y", "figure:f"});
+  REQUIRE(page.headings.size() == 2);
+  CHECK(page.headings[0].text == "Title");
+}
+
+TEST_CASE("the bibliography is read whole, and what is wrong in it is named by line", "[report]") {
+  const auto entries = read_bibliography(
+      "@article{A1,\n author = {M{\\o}ller, T. and B, C.},\n title = {The {RAPID} Way},\n"
+      " journal = {J}, volume = {2},\n pages = {1--3}, year = 1997, doi = {10.1/x}\n}\n"
+      "@misc{B2,\n title = {Page}\n}\n",
+      "x.bib");
+  REQUIRE(entries.size() == 2);
+  CHECK(entries[0].key == "A1");
+  CHECK(entries[1].line == 7);
+  CHECK(reference_html(entries[0]) ==
+        "Møller, T.; B, C. (1997). The RAPID Way. <em>J</em> 2, 1–3. "
+        "<span class=\"doi\">doi:10.1/x</span>");
+  try {
+    (void)read_bibliography("@misc{C,\n title = {open\n", "x.bib");
+    CHECK(false);
+  } catch (const kairos::InputError& error) {
+    CHECK(std::string(error.what()).starts_with("x.bib:"));
+  }
+}
+
+TEST_CASE("the paper cites what is in the bibliography, each entry of it once", "[report]") {
+  const std::string folder = std::string(KAIROS_SOURCE_DIR) + "/paper/";
+  const std::string text = read_all(folder + "references.bib");
+  const auto entries = read_bibliography(text, "references.bib");
+  std::set<std::string> keys;
+  for (const BibliographyEntry& entry : entries) {
+    CAPTURE(entry.key);
+    CHECK(keys.insert(entry.key).second);
+    CHECK(entry.fields.contains("title"));
+  }
+  const Paper paper = fill_paper({});  // nothing was made: every number is a hole
+  for (const std::string& hole : paper.holes) {
+    CAPTURE(hole);
+    CHECK_FALSE(hole.starts_with("cite:"));
+  }
+  CHECK(paper.holes.size() > 20);
+  // The thesis' nineteen references, five of which are pages of one site.
+  for (const char* key :
+       {"Webopedia1999", "Larsen1999", "Gottschalk1996", "Gottschalk1997", "Cohen1995",
+        "Hudson1997", "Bergen1999", "Bergen1997", "Keller1993", "Cremer1997", "Lubich1992",
+        "NASA1992", "Rorke1998", "Norman1990", "Bowman1995"}) {
+    CAPTURE(key);
+    CHECK(keys.contains(key));
+    CHECK(has(paper.references, std::string("ref-") + key));
+  }
 }

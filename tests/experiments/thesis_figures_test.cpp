@@ -1,12 +1,15 @@
 // The figures of the thesis, made again: their data, their names, their bytes.
 
 #include "core/entity.hpp"
+#include "experiments/scene_library.hpp"
+#include "experiments/sweeps/experiment_library.hpp"
 #include "experiments/sweeps/table.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
 
 #include <cmath>
+#include <filesystem>
 #include <set>
 #include <string>
 
@@ -228,4 +231,16 @@ TEST_CASE("figure 14: the swept box is as long as the movement and the ball", "[
   CHECK(longest <= moved + diameter + 1e-12);
   CHECK(shortest >= diameter - 1e-15);
   CHECK(shortest <= diameter + 1e-12);
+}
+
+TEST_CASE("names of shipped scenes and experiments mean the same in every folder", "[figures]") {
+  const TemporaryFolder folder;
+  (void)folder.file("bounce", "not a scene");
+  (void)folder.file("overview", "not a spec");
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path(""));
+  CHECK(find_scene("bounce").ends_with("/bounce.toml"));
+  CHECK(find_experiment("overview").ends_with("/overview.toml"));
+  CHECK(find_scene("./bounce") == "./bounce");
+  std::filesystem::current_path(before);
 }
