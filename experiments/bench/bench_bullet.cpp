@@ -23,7 +23,7 @@ btTransform transform(const Pose& pose) {
                      vector(pose.position));
 }
 
-Contest impacts(const std::vector<BoxPair>& pairs) {
+Contest impacts(const std::vector<BoxPair>& pairs, double /*tolerance*/) {
   return [&pairs](std::size_t first, std::size_t last, std::vector<double>& answers) {
     btVoronoiSimplexSolver simplex;
     btGjkEpaPenetrationDepthSolver penetration;

@@ -15,44 +15,9 @@
 namespace kairos::experiments {
 namespace {
 
-constexpr std::uint64_t seed = 20260108;
+constexpr std::uint64_t seed = 20260109;  ///< of the balls
 constexpr double never = std::numeric_limits<double>::infinity();
 constexpr double fcl_accuracy = 1e-4;  ///< m, and s
-
-/// Boxes of 0.2 to 1 m at a distance around `spread` (at 1.4 about half of them overlap) that fly
-/// past or into each other within 1 s, turning by up to `turn` rad each.
-std::vector<BoxPair> random_pairs(std::size_t count, double spread, double turn) {
-  std::vector<BoxPair> pairs(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    Random random(seed, i);
-    const auto box = [&random] {
-      const double x = random.uniform(0.2, 1.0);
-      const double y = random.uniform(0.2, 1.0);
-      return Box{{x, y, random.uniform(0.2, 1.0)}};
-    };
-    const auto spin = [&] {
-      const double rate = turn * random.uniform();
-      return Vector3(rate * random.direction());
-    };
-    BoxPair& pair = pairs[i];
-    pair.a = box();
-    pair.b = box();
-    pair.start_a = {Vector3::Zero(), random.orientation()};
-    const double distance = spread * random.uniform(0.6, 1.4);
-    pair.start_b.position = distance * random.direction();
-    pair.start_b.orientation = random.orientation();
-    pair.twist_a = {Vector3::Zero(), spin()};
-    // Towards the first, or beside it.
-    const Vector3 velocity = -1.5 * pair.start_b.position + 2.0 * random.direction();
-    pair.twist_b = {velocity, spin()};
-    const auto end = [](const Pose& start, const Twist& twist) {
-      return Pose{start.position + twist.linear, kairos::rotate(twist.angular, start.orientation)};
-    };
-    pair.end_a = end(pair.start_a, pair.twist_a);
-    pair.end_b = end(pair.start_b, pair.twist_b);
-  }
-  return pairs;
-}
 
 Contest sat_overlaps(const std::vector<BoxPair>& pairs) {
   std::vector<std::pair<ccd::OrientedBox, ccd::OrientedBox>> boxes;
@@ -171,7 +136,7 @@ const char* const fcl_overlap = "FCL: OBB::overlap";
 const char* const fcl_advancement = "FCL: conservative advancement, libccd";
 
 void race_overlaps(std::size_t count, int rounds, std::vector<Bar>& bars) {
-  const std::vector<BoxPair> pairs = random_pairs(count, 1.4, 0.0);
+  const std::vector<BoxPair> pairs = random_box_pairs(count, 1.4, 0.0);
   std::vector<Racer> racers{{"sat, proven", sat_overlaps(pairs)}};
   for (const PeerQuery& peer : all_peers()) {
     if (peer.overlaps) {
@@ -184,14 +149,14 @@ void race_overlaps(std::size_t count, int rounds, std::vector<Bar>& bars) {
 }
 
 void race_impacts(std::size_t count, int rounds, double turn, std::vector<Bar>& bars) {
-  const std::vector<BoxPair> pairs = random_pairs(count, 3.0, turn);
+  const std::vector<BoxPair> pairs = random_box_pairs(count, 3.0, turn);
   const std::string at_1e4 = "conservative-advancement at 1e-4 m";
   std::vector<Racer> racers{{"certified", impacts(pairs, "certified", 0.0)},
                             {at_1e4, impacts(pairs, "conservative-advancement", fcl_accuracy)},
                             {"bisection", impacts(pairs, "bisection", 0.0)}};
   for (const PeerQuery& peer : all_peers()) {
     if (peer.impacts) {
-      racers.push_back({peer.name, peer.impacts(pairs)});
+      racers.push_back({peer.name, peer.impacts(pairs, fcl_accuracy)});
     }
   }
   const double degrees = std::round(turn * 57.29577951308232);
@@ -217,7 +182,7 @@ struct Cloud {
     const auto size =
         static_cast<std::uint32_t>(std::ceil(std::sqrt(2.0 * static_cast<double>(count)))) + 1;
     for (std::uint32_t i = 0; i < size; ++i) {
-      Random random(seed + 1, i);
+      Random random(seed, i);
       balls.emplace_back(Sphere{random.uniform(0.05, 0.2)});
       const Pose at{{random.uniform(0.0, 4.0), random.uniform(0.0, 4.0), random.uniform(0.0, 4.0)},
                     Quaternion::Identity()};

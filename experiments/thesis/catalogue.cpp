@@ -24,6 +24,7 @@ ThesisFigure swept_box_of_geometric();
 ThesisFigure improved_flow_of_events();
 ThesisFigure gaining_energy();
 ThesisFigure errata_table();
+ThesisFigure toi_accuracy();
 
 }  // namespace thesis
 
@@ -44,6 +45,7 @@ std::span<const ThesisFigure> thesis_figures() {
       thesis::improved_flow_of_events(),
       thesis::gaining_energy(),
       thesis::errata_table(),
+      thesis::toi_accuracy(),
   };
   return figures;
 }
