@@ -1,0 +1,131 @@
+#include "core/mass_properties.hpp"
+
+#include "core/error.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+[[noreturn]] void refuse(const std::string& reason) { throw InputError("", 0, "mesh", reason); }
+
+void check_corners(std::span<const Vector3> vertices, std::span<const Triangle> triangles) {
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    if (!vertices[k].allFinite()) {
+      refuse(fmt::format("vertex {} is not finite", k));
+    }
+  }
+  for (std::size_t k = 0; k < triangles.size(); ++k) {
+    for (const std::size_t corner : triangles[k]) {
+      if (corner >= vertices.size()) {
+        refuse(fmt::format("triangle {} has the corner {}; allowed: 0 to {}", k, corner,
+                           vertices.size() - 1));
+      }
+    }
+  }
+}
+
+/// Every edge is walked once in each direction, which is what closed and consistently oriented is.
+void check_closed(std::span<const Triangle> triangles) {
+  using Edge = std::pair<std::size_t, std::size_t>;
+  std::vector<Edge> there, back;
+  for (const Triangle& t : triangles) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      there.emplace_back(t[i], t[(i + 1) % 3]);
+      back.emplace_back(t[(i + 1) % 3], t[i]);
+    }
+  }
+  std::sort(there.begin(), there.end());
+  std::sort(back.begin(), back.end());
+  const auto twice = std::adjacent_find(there.begin(), there.end());
+  if (twice != there.end()) {
+    refuse(fmt::format("the edge from {} to {} is there twice in the same direction", twice->first,
+                       twice->second));
+  }
+  const auto differ = std::mismatch(there.begin(), there.end(), back.begin());
+  if (differ.first != there.end()) {
+    const Edge edge = std::min(*differ.first, *differ.second);
+    refuse(fmt::format("is not closed: the edge between {} and {} has a triangle on one side only",
+                       edge.first, edge.second));
+  }
+}
+
+/// Integrals over the solid: 1, x, x x^T.
+struct Integrals {
+  double volume = 0.0;
+  Vector3 first = Vector3::Zero();
+  Matrix3 second = Matrix3::Zero();
+};
+
+Integrals integrate(std::span<const Vector3> vertices, std::span<const Triangle> triangles,
+                    const Vector3& origin) {
+  Integrals sum;
+  for (const Triangle& t : triangles) {
+    const Vector3 a = vertices[t[0]] - origin, b = vertices[t[1]] - origin,
+                  c = vertices[t[2]] - origin;
+    const double six_volumes = a.dot(b.cross(c));
+    const Vector3 s = a + b + c;
+    sum.volume += six_volumes / 6.0;
+    sum.first += six_volumes / 24.0 * s;
+    sum.second += six_volumes / 120.0 *
+                  (a * a.transpose() + b * b.transpose() + c * c.transpose() + s * s.transpose());
+  }
+  return sum;
+}
+
+void choose_axes(MassProperties& solid) {
+  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(solid.inertia);
+  solid.moments = solver.eigenvalues();
+  Matrix3 axes = solver.eigenvectors();
+  if (axes.determinant() < 0.0) {
+    axes.col(2) = -axes.col(2);
+  }
+  solid.axes = Quaternion(axes).normalized();
+}
+
+}  // namespace
+
+MassProperties mass_properties(std::span<const Vector3> vertices,
+                               std::span<const Triangle> triangles) {
+  if (vertices.empty() || triangles.empty()) {
+    refuse("is empty");
+  }
+  check_corners(vertices, triangles);
+  check_closed(triangles);
+  Vector3 middle = Vector3::Zero();
+  double extent = 0.0;
+  for (const Vector3& vertex : vertices) {
+    middle += vertex / static_cast<double>(vertices.size());
+  }
+  for (const Vector3& vertex : vertices) {
+    extent = std::max(extent, (vertex - middle).norm());
+  }
+  const Integrals rough = integrate(vertices, triangles, middle);
+  // Roundoff of the sum of that many signed volumes.
+  const double least = 64.0 * std::numeric_limits<double>::epsilon() *
+                       static_cast<double>(triangles.size()) * extent * extent * extent;
+  if (!(std::abs(rough.volume) > least)) {
+    refuse("encloses no volume");
+  }
+  if (rough.volume < 0.0) {
+    refuse("is turned inside out: corners must go counterclockwise seen from outside");
+  }
+  MassProperties solid;
+  solid.centre = middle + rough.first / rough.volume;
+  const Integrals about_centre = integrate(vertices, triangles, solid.centre);
+  solid.volume = about_centre.volume;
+  solid.inertia = about_centre.second.trace() * Matrix3::Identity() - about_centre.second;
+  choose_axes(solid);
+  return solid;
+}
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "core/pose.hpp"
+
+#include <array>
+#include <span>
+
+namespace kairos {
+inline namespace core {
+
+/// Corners of a triangle of a mesh, counterclockwise seen from outside.
+using Triangle = std::array<std::size_t, 3>;
+
+/// Of a homogeneous solid of density 1 (kg/m^3): times a density, or a mass over the volume.
+struct MassProperties {
+  double volume = 0.0;                       ///< m^3
+  Vector3 centre = Vector3::Zero();          ///< of mass, frame of the vertices, m
+  Matrix3 inertia = Matrix3::Zero();         ///< about the centre, axes of the vertices, kg m^2
+  Vector3 moments = Vector3::Zero();         ///< principal, ascending, kg m^2
+  Quaternion axes = Quaternion::Identity();  ///< from principal axes to those of the vertices
+};
+
+/// Of the solid inside a closed triangle mesh, convex or not: exact integrals over the signed
+/// tetrahedra from a point inside to every triangle [Mirtich1996b], [Eberly2002]. Their roundoff is
+/// relative to the mesh's own size, wherever it lies.
+///
+/// Throws `InputError` where there is no inside: a corner that does not exist, an edge without
+/// exactly one triangle on either side, triangles turned inside out, no volume, numbers that are
+/// not finite.
+[[nodiscard]] MassProperties mass_properties(std::span<const Vector3> vertices,
+                                             std::span<const Triangle> triangles);
+
+}  // namespace core
+}  // namespace kairos
