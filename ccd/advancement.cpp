@@ -143,8 +143,8 @@ class Advancement {
 
   /// Looks ahead from a gap within tolerance for a proven overlap. True if that settles the query.
   bool resolve_contact() {
-    if (!prove_) {
-      return impact(k_.t, k_.t);
+    if (!prove_) {  // a pair that leaves is followed: it has just met
+      return approach() >= 0.0 && impact(k_.t, k_.t);
     }
     const Kinematics here = k_;
     const Witness witness = witness_;

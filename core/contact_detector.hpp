@@ -27,6 +27,8 @@ struct DetectorInfo {
   bool locates = false;  ///< answers `time_of_impact` with a time, not only with yes or no
   bool proves = false;   ///< its `separated` and its brackets are proven, rounding included
   std::string_view summary;
+  /// Tells only contacts at which a stepper ended its step (see `Stepper::watch`).
+  bool at_step_ends = false;
 };
 
 /// Port: are these two touching, and since when? Stateless; safe to share between threads.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/force.hpp"
+#include "core/gap_function.hpp"
 #include "core/motion.hpp"
 
 #include <cstdint>
@@ -76,6 +77,9 @@ class Stepper {
                       std::span<ReplayedStep> /*after*/) const {
     return false;
   }
+  /// Lets steps end where one of the gaps falls through zero, as far as the solver's own
+  /// rootfinding sees it. False, and nothing changes, for steppers that have none. Before `start`.
+  virtual bool watch(std::shared_ptr<const GapFunction> /*gaps*/) { return false; }
   /// Right-hand sides evaluated so far: the counted cost.
   [[nodiscard]] virtual std::int64_t evaluations() const = 0;
   /// Writes or reads all that the next step, the last step's dense output and the counted cost

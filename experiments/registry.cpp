@@ -6,6 +6,7 @@
 #include "ccd/conservative_advancement.hpp"
 #include "ccd/dynamic_tree.hpp"
 #include "ccd/sat.hpp"
+#include "ccd/step_ends.hpp"
 #include "ccd/sweep_and_prune.hpp"
 #include "ccd/swept_box.hpp"
 #include "core/error.hpp"
@@ -18,10 +19,12 @@
 #include "core/schemes/geometric.hpp"
 #include "core/schemes/original.hpp"
 #include "core/schemes/substepped.hpp"
+#include "experiments/model_gaps.hpp"
 #include "integrators/catalogue.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -51,6 +54,15 @@ std::shared_ptr<const Port> find(std::string_view port, std::string_view name,
   unknown(port, name, names);
 }
 
+/// What `auto` means where a detector needs a stepper that finds impacts by itself.
+constexpr std::string_view rootfinding_integrator = "cvode-adams";
+
+bool has_integrator(std::string_view name) {
+  const auto all = integrators();
+  return std::any_of(all.begin(), all.end(),
+                     [name](const IntegratorEntry& entry) { return entry.info.name == name; });
+}
+
 const IntegratorEntry& find_entry(std::string_view name) {
   std::vector<std::string_view> names{"auto"};
   for (const IntegratorEntry& entry : integrators()) {
@@ -71,9 +83,14 @@ std::span<const std::shared_ptr<const Scheme>> schemes() {
 }
 
 std::span<const std::shared_ptr<const ContactDetector>> detectors() {
-  static const Entries<ContactDetector> entries{ccd::make_sat(), ccd::make_bisection(),
-                                                ccd::make_conservative_advancement(),
-                                                ccd::make_certified()};
+  static const Entries<ContactDetector> entries = [] {
+    Entries<ContactDetector> made{ccd::make_sat(), ccd::make_linear(), ccd::make_bisection(),
+                                  ccd::make_conservative_advancement(), ccd::make_certified()};
+    if (has_integrator(rootfinding_integrator)) {
+      made.push_back(ccd::make_cvode_rootfinding());
+    }
+    return made;
+  }();
   return entries;
 }
 
@@ -113,6 +130,15 @@ IslandStepper find_integrator(std::string_view name, const StepperOptions& optio
   }
   return
       [make = find_entry(name).make, options](const Model&, std::size_t) { return make(options); };
+}
+
+IslandStepper find_watching_integrator(std::string_view name, const StepperOptions& options) {
+  const auto make = find_entry(name == "auto" ? rootfinding_integrator : name).make;
+  return [make, options](const Model& model, std::size_t island) {
+    std::unique_ptr<Stepper> stepper = make(options);
+    return stepper->watch(std::make_shared<const ModelGaps>(model, island)) ? std::move(stepper)
+                                                                            : nullptr;
+  };
 }
 
 std::span<const std::string_view> broad_phases() {

@@ -32,6 +32,10 @@ struct IntegratorEntry {
 /// `closed-form` where it can, a Runge-Kutta method otherwise.
 [[nodiscard]] IslandStepper find_integrator(std::string_view name,
                                             const StepperOptions& options = {});
+/// The same with steppers that end their steps where bodies meet (`Stepper::watch`); null where a
+/// stepper cannot. `auto`: cvode-adams.
+[[nodiscard]] IslandStepper find_watching_integrator(std::string_view name,
+                                                     const StepperOptions& options = {});
 [[nodiscard]] BroadPhaseFactory find_broad_phase(std::string_view name);
 /// What a broad phase is told of a moving shape.
 [[nodiscard]] SweptBounds swept_bounds();

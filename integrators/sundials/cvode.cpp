@@ -1,7 +1,7 @@
 #include "integrators/sundials/cvode.hpp"
 
 #include "integrators/dense_output.hpp"
-#include "integrators/sundials/island_system.hpp"
+#include "integrators/sundials/watched_system.hpp"
 
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
@@ -13,6 +13,7 @@ namespace kairos::integrators {
 namespace {
 
 using sundials::IslandSystem;
+using sundials::WatchedSystem;
 
 struct FreeCvode {
   void operator()(void* memory) const { CVodeFree(&memory); }
@@ -106,6 +107,7 @@ class Cvode final : public Stepper {
   void start(const Island& island, Instant t, std::span<const BodyState> states) override {
     ode_.layout(island);
     create();
+    system_.watch(memory_.get(), states);
     history_.resize(ode_.size());
     current_.resize(ode_.size());
     packed_.assign(ode_.size(), 0.0);
@@ -116,6 +118,11 @@ class Cvode final : public Stepper {
   void restart(const Island& /*island*/, Instant /*t*/,
                std::span<const BodyState> /*states*/) override {
     fresh_ = true;
+  }
+
+  bool watch(std::shared_ptr<const GapFunction> gaps) override {
+    system_.gaps = std::move(gaps);
+    return true;
   }
 
   StepResult step(const Island& island, Instant t, double h, std::span<BodyState> states) override {
@@ -177,13 +184,13 @@ class Cvode final : public Stepper {
     y_ = sundials::make_vector(ode_.size(), context_.get());
     derivative_ = sundials::make_vector(ode_.size(), context_.get());
     N_VConst(0.0, y_.get());
-    system_ = {&ode_, 0.0};
+    system_.ode = &ode_;
     memory_.reset(CVodeCreate(method_, context_.get()));
 #if SUNDIALS_VERSION_MAJOR < 7
     CVodeSetErrHandlerFn(memory_.get(), sundials::ignore_message, nullptr);
 #endif
     CVodeInit(memory_.get(), IslandSystem::rhs, 0.0, y_.get());
-    CVodeSetUserData(memory_.get(), &system_);
+    CVodeSetUserData(memory_.get(), system_.self());
     const sundials::Tolerances tolerances(options_, ode_.size());
     CVodeSStolerances(memory_.get(), tolerances.relative, tolerances.absolute);
     if (method_ == CV_ADAMS) {
@@ -200,7 +207,7 @@ class Cvode final : public Stepper {
   // One step of the solver from t, and its Nordsieck array into `history_`.
   bool advance_solver(const Island& island, Instant t, std::span<const BodyState> states) {
     if (fresh_) {
-      epoch_ = t;
+      epoch_ = system_.epoch = t;
       clock_ = 0.0;
       ode_.bind(island, epoch_);
       ode_.pack(states, sundials::data(y_.get()));
@@ -248,7 +255,7 @@ class Cvode final : public Stepper {
   Owned<SUNMatrix, FreeMatrix> matrix_;
   Owned<SUNLinearSolver, FreeLinear> linear_;
   Owned<SUNNonlinearSolver, FreeNonlinear> nonlinear_;
-  IslandSystem system_;
+  WatchedSystem system_;
   std::unique_ptr<void, FreeCvode> memory_;
   History history_;             ///< of the solver's step, from the end of the last piece on
   History current_;             ///< of the last piece

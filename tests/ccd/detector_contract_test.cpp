@@ -3,6 +3,7 @@
 #include "ccd/certified.hpp"
 #include "ccd/conservative_advancement.hpp"
 #include "ccd/sat.hpp"
+#include "ccd/step_ends.hpp"
 #include "tests/catch.hpp"
 #include "experiments/accuracy/random_query.hpp"
 
@@ -273,4 +274,39 @@ TEST_CASE("no detector misses what sweeps overlap cannot exclude", "[ccd][contra
       }
     }
   }
+}
+
+TEST_CASE("linear: late or early by the curvature of the gap, blind to what is within a step",
+          "[ccd]") {
+  const auto linear = ccd::make_linear();
+  // A ball of 0.5 m falls from a gap of 1 m under a = -8: contact after 0.5 s; on the straight line
+  // between gaps of 1 m and 1 - 4 h^2 it is at h / (4 h^2) = 1/(4 h).
+  const auto fall = [&](double h) {
+    const Shape ball = Sphere{0.5};
+    const Shape floor = HalfSpace{};
+    const Motion falling = Motion::ballistic({}, h, pose({0.0, 1.5, 0.0}, Quaternion::Identity()),
+                                             {}, {0.0, -8.0, 0.0});
+    const Motion resting = Motion::at_rest({}, pose(zero, Quaternion::Identity()));
+    return linear->time_of_impact({ball, falling}, {floor, resting}, {{}, h}, 0.0);
+  };
+  CHECK(fall(0.4).status == ToiStatus::separated);
+  for (const double h : {0.6, 0.8, 1.0}) {
+    const TimeOfImpact toi = fall(h);
+    CHECK(toi.status == ToiStatus::impact);
+    CHECK(toi.t_lo == Approx(0.25 / h).epsilon(1e-14));
+    CHECK(toi.evaluations == 3);
+  }
+  // Through a wall of 0.2 m within the window: both ends are apart, and nothing is seen.
+  const Shape ball = Sphere{0.1};
+  const Shape wall = Box{{0.1, 1.0, 1.0}};
+  const Motion bullet = Motion::ballistic({}, 1.0, pose({-5.0, 0.0, 0.0}, Quaternion::Identity()),
+                                          {{10.0, 0.0, 0.0}, zero}, zero);
+  const Motion resting = Motion::at_rest({}, pose(zero, Quaternion::Identity()));
+  CHECK(linear->time_of_impact({ball, bullet}, {wall, resting}, {{}, 1.0}, 0.0).status ==
+        ToiStatus::separated);
+  CHECK(ccd::make_certified()
+            ->time_of_impact({ball, bullet}, {wall, resting}, {{}, 1.0}, 0.0)
+            .status == ToiStatus::impact);
+  CHECK(linear->time_of_impact({ball, bullet}, {wall, resting}, {{}, inf}, 0.0).status ==
+        ToiStatus::undecided);
 }
