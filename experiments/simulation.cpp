@@ -4,7 +4,9 @@
 #include "core/error.hpp"
 #include "core/schemes/journaled_stepper.hpp"
 #include "experiments/metrics/penetration.hpp"
+#include "experiments/model_gaps.hpp"
 #include "experiments/registry.hpp"
+#include "experiments/run_guard.hpp"
 
 #include <fmt/format.h>
 
@@ -66,10 +68,13 @@ SchemeOptions scheme_options(const Scene& scene, const RunChoice& choice) {
 
 Plan make_plan(const Model& model, const RunChoice& choice) {
   check_numbers(choice);
+  const auto detector = find_detector(choice.method.detector);
+  const auto integrator =
+      detector->info().at_step_ends ? find_watching_integrator : find_integrator;
   Plan plan{find_scheme(choice.method.scheme),
-            {find_integrator(choice.method.integrator, choice.stepper),
-             find_detector(choice.method.detector), find_impact_law(choice.method.impact),
-             find_broad_phase(model.broad_phase()), swept_bounds()},
+            {integrator(choice.method.integrator, choice.stepper), detector,
+             find_impact_law(choice.method.impact), find_broad_phase(model.broad_phase()),
+             swept_bounds()},
             scheme_options(model.scene(), choice)};
   const double frame = mean_frame_duration(plan.options.frames);
   require(positive(frame), "frame", frame, "a finite number > 0 (s)");
@@ -79,6 +84,12 @@ Plan make_plan(const Model& model, const RunChoice& choice) {
 std::string stepper_refusal(const Model& model, const Plan& plan) {
   for (std::size_t i = 0; i < model.islands().size(); ++i) {
     const std::unique_ptr<Stepper> stepper = plan.method.stepper(model, i);
+    if (stepper == nullptr) {
+      return fmt::format(
+          "detector '{}' needs an integrator that finds impacts by itself: "
+          "cvode-adams, cvode-bdf",
+          plan.method.detector->info().name);
+    }
     const std::string reason = stepper->refuses(model.islands()[i]);
     if (!reason.empty()) {
       return fmt::format("integrator '{}': {}", stepper->info().name, reason);
@@ -94,6 +105,9 @@ std::string refusal(const Model& model, const Plan& plan) {
     return fmt::format(
         "scheme '{}' needs to know when two bodies touch; detector '{}' only tells whether they do",
         scheme.name, detector.name);
+  }
+  if (const std::string pair = pair_across_islands(model); detector.at_step_ends && !pair.empty()) {
+    return fmt::format("detector '{}': {}", detector.name, pair);
   }
   if (plan.options.duration / mean_frame_duration(plan.options.frames) > most_frames) {
     return fmt::format("{} s in frames of {} s are more than {} frames", plan.options.duration,
@@ -119,64 +133,6 @@ void refuse_overlap_at_start(const Model& model) {
                                  found->depth, a.name, a.line));
   }
 }
-
-/// A run that has left the numbers.
-struct NotFinite {
-  BodyIndex body = 0;
-  Instant time;
-};
-
-/// The last line of defence: NaN and infinity never travel. Ends the run at the first of them, and
-/// remembers the last frame, which was whole.
-class FiniteGuard : public Recorder {
- public:
-  explicit FiniteGuard(Recorder& inner) : inner_(inner) {}
-
-  void begin(const Model& model) override { inner_.begin(model); }
-  [[nodiscard]] bool wants_motions() const override { return inner_.wants_motions(); }
-  void frame(const Frame& frame) override {
-    for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
-      check(frame.bodies[i], i, frame.time);
-    }
-    last_.end = frame.time;
-    last_.state.assign(frame.bodies.begin(), frame.bodies.end());
-    last_.ledger = frame.ledger;
-    ++last_.cost.frames;
-    inner_.frame(frame);
-  }
-  void motion(BodyIndex body, const Motion& motion) override { inner_.motion(body, motion); }
-  void event(const Event& event) override {
-    check(event.after_a, event.a, event.time);
-    check(event.after_b, event.b, event.time);
-    ++last_.cost.events;
-    inner_.event(event);
-  }
-  void stage(Stage stage, double fraction) override { inner_.stage(stage, fraction); }
-  bool persist(Archive& archive) override {
-    archive(last_.end, last_.state, last_.ledger, last_.cost);
-    return inner_.persist(archive);
-  }
-
-  /// The run up to its last frame. Of its cost, frames and events are known.
-  [[nodiscard]] RunResult stopped(std::string reason) && {
-    last_.status = RunStatus::stopped;
-    last_.reason = std::move(reason);
-    return std::move(last_);
-  }
-
- private:
-  static void check(const BodyState& body, BodyIndex i, Instant t) {
-    // x - x is 0 for finite x alone; sums keep what is not.
-    const double sum = body.pose.position.sum() + body.pose.orientation.coeffs().sum() +
-                       body.twist.linear.sum() + body.twist.angular.sum();
-    if (!(sum - sum == 0.0)) {
-      throw NotFinite{i, t};
-    }
-  }
-
-  Recorder& inner_;
-  RunResult last_;
-};
 
 void continue_as(const Continuation& continuation, Plan& plan) {
   plan.options.keeper = continuation.keeper;
@@ -204,12 +160,11 @@ RunResult simulate(const Model& model, const RunChoice& choice, Recorder& record
   if (continuation.keeper != nullptr || !continuation.resume.empty()) {
     continue_as(continuation, plan);
   }
-  FiniteGuard guard(recorder);
+  RunGuard guard(recorder);
   try {
     return plan.scheme->run(model, plan.method, plan.options, guard);
-  } catch (const NotFinite& found) {
-    return std::move(guard).stopped(fmt::format("not finite: the state of '{}' at t = {} s",
-                                                model.body(found.body).name, found.time.seconds));
+  } catch (const RunGuard::Broken& found) {
+    return std::move(guard).stopped(found.reason);
   }
 }
 

@@ -107,8 +107,7 @@ TEST_CASE("solids that start inside each other are refused, touching ones are no
 
 TEST_CASE("a run that leaves the numbers stops with a reason, and its last frame is whole",
           "[simulation]") {
-  // Explicit Euler on a tumbling box with frames far too long: its spin explodes.
-  const Scene scene = parse_scene(R"(duration = 1e4
+  const std::string box = R"(duration = 1e3
 frame = "1s"
 G = 0.0
 [[body]]
@@ -117,15 +116,35 @@ entity = "body"
 half_extents = [0.1, 0.2, 0.3]
 mass = 1.0
 angular_velocity = [3.0, 2.0, 1.0]
-)",
-                                  "tumble.toml");
-  const Simulation simulation =
-      simulate(scene, {.method = {.scheme = "original", .integrator = "explicit-euler"}});
-  CHECK(simulation.result.status == RunStatus::stopped);
-  CHECK(mentions(simulation.result.reason, "not finite"));
-  CHECK(mentions(simulation.result.reason, "box"));
-  CHECK(simulation.result.state[0].twist.angular.allFinite());
-  CHECK(simulation.result.state[0].pose.orientation.coeffs().allFinite());
+)";
+  const auto run = [](const std::string& text, const char* integrator) {
+    return simulate(parse_scene(text, "box.toml"),
+                    {.method = {.scheme = "original", .integrator = integrator}});
+  };
+  SECTION("explicit Euler on a stiff spring with frames far too long: it flies ever farther") {
+    const RunResult result =
+        run(box +
+                "position = [1, 0, 0]\n[[force]]\nkind = \"spring\"\nbodies = [\"box\"]\n"
+                "anchor = [0, 0, 0]\nstiffness = 10\npoint_a = [0, 0, 0.1]",
+            "explicit-euler")
+            .result;
+    CHECK(result.status == RunStatus::stopped);
+    CHECK(mentions(result.reason, "not finite"));
+    CHECK(mentions(result.reason, "box"));
+    CHECK(result.state[0].pose.position.allFinite());
+  }
+  SECTION("a tumbling box: its spin explodes, and that is told before it overflows") {
+    for (const char* integrator : {"explicit-euler", "rk4", "dopri5"}) {
+      const RunResult result = run(box, integrator).result;
+      CAPTURE(integrator, result.reason);
+      const bool controlled = std::string(integrator) == "dopri5";
+      CHECK(result.status == (controlled ? RunStatus::completed : RunStatus::stopped));
+      CHECK(mentions(result.reason, controlled ? "" : "unstable"));
+      CHECK(mentions(result.reason, controlled ? "" : "box"));
+      // At most what its angular momentum allows, twice.
+      CHECK(result.state[0].twist.angular.norm() < 40.0);
+    }
+  }
 }
 
 TEST_CASE("metrics are what the drawn frames show", "[metrics]") {
