@@ -1,6 +1,7 @@
 #include "experiments/metrics/metrics.hpp"
 
 #include "core/error.hpp"
+#include "core/exact_solution.hpp"
 #include "experiments/metrics/metric_apex.hpp"
 #include "experiments/metrics/metric_between.hpp"
 #include "experiments/metrics/metric_crossing.hpp"
@@ -22,6 +23,7 @@ struct MetricRecorder::Watches {
   std::optional<CrossingWatch> crossing;
   ApexWatch apex;
   ImpactWatch impacts;
+  std::unique_ptr<const ExactMotion> exact;
 };
 
 namespace {
@@ -37,10 +39,11 @@ struct Observation {
   const ApexWatch& apex;
   const ImpactWatch& impacts;
   const BodyState& subject;
+  const BodyState* exact;  ///< null: there is none, or nobody asked
 };
 
 /// What must be watched for a metric.
-enum class Needs { nothing, frames, between, crossing, apex };
+enum class Needs { nothing, frames, between, crossing, apex, exact };
 
 struct Entry {
   MetricInfo info;
@@ -61,6 +64,10 @@ double counted(const Observation& o) {
 template <int axis>
 double end_position(const Observation& o) {
   return o.subject.pose.position[axis];
+}
+
+double position_error(const Observation& o) {
+  return o.exact == nullptr ? none : (o.subject.pose.position - o.exact->pose.position).norm();
 }
 
 double energy_gain(const Observation& o) {
@@ -157,6 +164,10 @@ const std::vector<Entry>& entries() {
       {{"end_x", "m", "position of the subject at the end"}, Needs::nothing, end_position<0>},
       {{"end_y", "m", "position of the subject at the end"}, Needs::nothing, end_position<1>},
       {{"end_z", "m", "position of the subject at the end"}, Needs::nothing, end_position<2>},
+      {{"position_error", "m",
+        "distance of the subject from the scene's exact solution at the end"},
+       Needs::exact,
+       position_error},
       {{"end_speed", "m/s", "speed of the subject at the end"},
        Needs::nothing,
        [](O o) { return o.subject.twist.linear.norm(); }},
@@ -245,7 +256,8 @@ bool MetricRecorder::wants_motions() const {
 
 void MetricRecorder::begin(const Model& model) {
   const BodyIndex subject = subject_of(model, request_.subject);
-  watches_.reset(new Watches{subject, {}, {}, {}, ApexWatch(subject), ImpactWatch(model, subject)});
+  watches_.reset(
+      new Watches{subject, {}, {}, {}, ApexWatch(subject), ImpactWatch(model, subject), {}});
   if (needed(request_, Needs::frames)) {
     watches_->frames.emplace().begin(model);
   }
@@ -254,6 +266,9 @@ void MetricRecorder::begin(const Model& model) {
   }
   if (needed(request_, Needs::crossing)) {
     watches_->crossing.emplace(model);
+  }
+  if (needed(request_, Needs::exact)) {
+    watches_->exact = solve_exactly(model.scene());
   }
 }
 
@@ -288,9 +303,11 @@ std::optional<double> MetricRecorder::value(std::string_view metric,
     return std::nullopt;
   }
   const Watches& w = *watches_;
-  const double x = entry->value(
-      {result, w.frames ? &w.frames->metrics() : nullptr, w.between ? &*w.between : nullptr,
-       w.crossing ? &*w.crossing : nullptr, w.apex, w.impacts, result.state[w.subject]});
+  const auto exact = w.exact ? w.exact->state(w.subject, result.end) : std::nullopt;
+  const double x =
+      entry->value({result, w.frames ? &w.frames->metrics() : nullptr,
+                    w.between ? &*w.between : nullptr, w.crossing ? &*w.crossing : nullptr, w.apex,
+                    w.impacts, result.state[w.subject], exact ? &*exact : nullptr});
   return std::isfinite(x) ? std::optional(x) : std::nullopt;
 }
 

@@ -146,14 +146,18 @@ class Parser {
         {"floor", [](double x) { return std::floor(x); }},
         {"ceil", [](double x) { return std::ceil(x); }},
         {"log10", [](double x) { return std::log10(x); }},
+        {"sin", [](double x) { return std::sin(x); }},
+        {"cos", [](double x) { return std::cos(x); }},
     };
     for (const auto& [known, function] : functions) {
       if (known == name) {
         return function(arguments.front());
       }
     }
-    fail(fmt::format("there is no function '{}'; there are min, max, abs, sqrt, floor, ceil, log10",
-                     name));
+    fail(
+        fmt::format("there is no function '{}'; there are min, max, abs, sqrt, floor, ceil, log10, "
+                    "sin, cos",
+                    name));
   }
 
   [[nodiscard]] int peek() const { return static_cast<unsigned char>(text_[at_]); }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <stdexcept>
 
 namespace kairos::experiments {
@@ -19,7 +20,7 @@ struct NumberOption {
   double most;
 };
 constexpr double large = 1e300;
-constexpr std::array<NumberOption, 13> number_options = {{
+constexpr std::array<NumberOption, 14> number_options = {{
     {"frame", 0.0, false, large},
     {"frame_jitter", 0.0, true, 0.999},
     {"spike_probability", 0.0, true, 1.0},
@@ -32,6 +33,7 @@ constexpr std::array<NumberOption, 13> number_options = {{
     {"toi_tolerance", 0.0, true, large},
     {"relative_tolerance", 0.0, false, 1.0},
     {"absolute_tolerance", 0.0, false, large},
+    {"fixed_step", 0.0, true, 1.0},
     {"roundoff", 0.0, true, 1.0},
 }};
 
@@ -106,6 +108,9 @@ void MethodOptions::set_number(std::string_view name, double value) {
     choice_.stepper.relative_tolerance = value;
   } else if (name == "absolute_tolerance") {
     choice_.stepper.absolute_tolerance = value;
+  } else if (name == "fixed_step") {
+    const double off = std::numeric_limits<double>::infinity();  // see StepperOptions
+    choice_.stepper = flag ? StepperOptions{off, off} : StepperOptions{};
   } else {
     choice_.roundoff = flag;
   }

@@ -18,6 +18,7 @@ TEST_CASE("expressions follow the usual precedence", "[expression]") {
   CHECK(evaluate("8/4/2", values) == 1.0);
   CHECK(evaluate("max(0, 1 - (w + 2*0.02)/(speed*h))", values) == Approx(0.82));
   CHECK(evaluate("min(3, 1, 2) + abs(-1) + sqrt(4) + floor(1.5) + ceil(1.5)", values) == 7.0);
+  CHECK(evaluate("sin(pi/6) - cos(pi/3)", values) == Approx(0.0).margin(1e-15));
   CHECK(evaluate(" 1e-3 * 1e3 ", values) == 1.0);
 }
 
