@@ -3,6 +3,7 @@
 #include "core/archive.hpp"
 #include "core/error.hpp"
 #include "core/schemes/journaled_stepper.hpp"
+#include "experiments/cold_restarts.hpp"
 #include "experiments/metrics/penetration.hpp"
 #include "experiments/model_gaps.hpp"
 #include "experiments/registry.hpp"
@@ -76,6 +77,11 @@ Plan make_plan(const Model& model, const RunChoice& choice) {
              find_impact_law(choice.method.impact), find_broad_phase(model.broad_phase()),
              swept_bounds()},
             scheme_options(model.scene(), choice)};
+  if (choice.cold_restarts) {
+    plan.method.stepper = [make = plan.method.stepper](const Model& of, std::size_t island) {
+      return with_cold_restarts(make(of, island));
+    };
+  }
   const double frame = mean_frame_duration(plan.options.frames);
   require(positive(frame), "frame", frame, "a finite number > 0 (s)");
   return plan;

@@ -34,6 +34,8 @@ struct RunChoice {
   std::int64_t max_substeps = 100000;
   double toi_tolerance = 0.0;  ///< m
   bool roundoff = false;
+  bool cold_restarts =
+      false;  ///< steppers forget all they know at every impact, see the experiment
 };
 
 /// What a run that is interrupted leaves behind, and where it goes on from.

@@ -29,16 +29,20 @@ void list_schemes() {
 std::string order(int order) { return order == 0 ? "exact" : fmt::format("{}", order); }
 
 void list_integrators() {
-  fmt::print("  {:<24}{:<7}{:<22}{:<12}{:<12}{:<10}{}\n", "", "order", "dense position/speed",
-             "symplectic", "controlled", "library", "source");
+  fmt::print("  {:<24}{:<10}{:<22}{:<12}{:<12}{:<10}{}\n", "", "order", "dense position/speed",
+             "symplectic", "step", "library", "source");
   fmt::print("  {:<24}closed-form where the model allows it, a Runge-Kutta method otherwise\n",
              "auto");
   for (const IntegratorEntry& entry : integrators()) {
     const StepperInfo& info = entry.info;
-    fmt::print("  {:<24}{:<7}{:<22}{:<12}{:<12}{:<10}{}\n", info.name, order(info.order),
-               order(info.position_order) + " / " + order(info.velocity_order),
-               info.symplectic ? "yes" : "no", info.controlled ? "yes" : "no", info.library,
-               info.source);
+    const std::string most = info.variable_order ? "up to " : "";
+    fmt::print("  {:<24}{:<10}{:<22}{:<12}{:<12}{:<10}{}\n", info.name, most + order(info.order),
+               most + order(info.position_order) + " / " + order(info.velocity_order),
+               info.symplectic ? "yes" : "no",
+               info.controlled   ? "controlled"
+               : info.order == 0 ? "any"
+                                 : "fixed",
+               info.library, info.source);
   }
 }
 

@@ -20,7 +20,7 @@ struct NumberOption {
   double most;
 };
 constexpr double large = 1e300;
-constexpr std::array<NumberOption, 14> number_options = {{
+constexpr std::array<NumberOption, 15> number_options = {{
     {"frame", 0.0, false, large},
     {"frame_jitter", 0.0, true, 0.999},
     {"spike_probability", 0.0, true, 1.0},
@@ -34,6 +34,7 @@ constexpr std::array<NumberOption, 14> number_options = {{
     {"relative_tolerance", 0.0, false, 1.0},
     {"absolute_tolerance", 0.0, false, large},
     {"fixed_step", 0.0, true, 1.0},
+    {"cold_restarts", 0.0, true, 1.0},
     {"roundoff", 0.0, true, 1.0},
 }};
 
@@ -111,6 +112,8 @@ void MethodOptions::set_number(std::string_view name, double value) {
   } else if (name == "fixed_step") {
     const double off = std::numeric_limits<double>::infinity();  // see StepperOptions
     choice_.stepper = flag ? StepperOptions{off, off} : StepperOptions{};
+  } else if (name == "cold_restarts") {
+    choice_.cold_restarts = flag;
   } else {
     choice_.roundoff = flag;
   }

@@ -3,8 +3,6 @@
 #include "integrators/composite_stepper.hpp"
 #include "integrators/sundials/island_system.hpp"
 
-#include <arkode/arkode_erkstep.h>
-
 namespace kairos::integrators {
 namespace {
 
@@ -14,16 +12,11 @@ struct FreeErkStep {
   void operator()(void* memory) const { ERKStepFree(&memory); }
 };
 
-/// Before SUNDIALS 6.6 ERKStep takes the last stage of every table that ends at c = 1 for y' at the
-/// end of the step, which is true of first-same-as-last tables only: the default tables of orders
-/// 2, 6 and 8 lose their order (6 falls to 3). A reset before each step makes it evaluate y'. Cf.
-/// the project's issue 311.
+/// Of ERKStep's default tables those of orders 2, 6 and 8 lose their order where it takes their
+/// last stage for y' at the end of the step (6 falls to 3). A reset before each step makes it
+/// evaluate y'.
 constexpr bool forgets_last_stage(int order) {
-#if SUNDIALS_VERSION_MAJOR < 6 || (SUNDIALS_VERSION_MAJOR == 6 && SUNDIALS_VERSION_MINOR < 6)
-  return order == 2 || order == 6 || order == 8;
-#else
-  return order < 0;
-#endif
+  return sundials::erkstep_reuses_last_stage && (order == 2 || order == 6 || order == 8);
 }
 
 class Arkode final : public CompositeStepper {
@@ -44,9 +37,7 @@ class Arkode final : public CompositeStepper {
     system_ = {&ode_, 0.0};
     memory_.reset(ERKStepCreate(IslandSystem::rhs, 0.0, y_.get(), context_.get()));
     ERKStepSetUserData(memory_.get(), &system_);
-#if SUNDIALS_VERSION_MAJOR < 7
-    ERKStepSetErrHandlerFn(memory_.get(), sundials::ignore_message, nullptr);
-#endif
+    sundials::silence_erkstep(memory_.get());
     ERKStepSetOrder(memory_.get(), info_.order);
     if (sundials::controlled(options_)) {
       const sundials::Tolerances tolerances(options_, ode_.size());

@@ -186,9 +186,7 @@ class Cvode final : public Stepper {
     N_VConst(0.0, y_.get());
     system_.ode = &ode_;
     memory_.reset(CVodeCreate(method_, context_.get()));
-#if SUNDIALS_VERSION_MAJOR < 7
-    CVodeSetErrHandlerFn(memory_.get(), sundials::ignore_message, nullptr);
-#endif
+    sundials::silence_cvode(memory_.get());
     CVodeInit(memory_.get(), IslandSystem::rhs, 0.0, y_.get());
     CVodeSetUserData(memory_.get(), system_.self());
     const sundials::Tolerances tolerances(options_, ode_.size());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <arkode/arkode_erkstep.h>
 #include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
@@ -7,9 +8,10 @@
 
 #include <memory>
 
-/// What differs between SUNDIALS 6 and 7, in one place: the type of a communicator, and how its
-/// chatter on stderr is switched off. The paths of 7 follow its release notes and are unverified
-/// where the distribution has no 7. To be included by .cpp files only.
+/// What differs between versions of SUNDIALS, in one place: the type of a number and of a
+/// communicator, how chatter on stderr is switched off, and a defect of ERKStep. The paths of 7
+/// follow its release notes and are unverified where the distribution has no 7. To be included by
+/// .cpp files only.
 namespace kairos::integrators::sundials {
 
 #if SUNDIALS_VERSION_MAJOR >= 7
@@ -45,9 +47,21 @@ inline Vector make_vector(std::size_t size, SUNContext context) {
 }
 inline double* data(N_Vector vector) { return N_VGetArrayPointer(vector); }
 
-#if SUNDIALS_VERSION_MAJOR < 7
-/// Failures are told by return values.
+/// Failures are told by return values: solvers say nothing on stderr (7: see `make_context`).
+#if SUNDIALS_VERSION_MAJOR >= 7
+inline void silence_cvode(void* /*solver*/) {}
+inline void silence_erkstep(void* /*solver*/) {}
+#else
 inline void ignore_message(int, const char*, const char*, char*, void*) {}
+inline void silence_cvode(void* solver) { CVodeSetErrHandlerFn(solver, ignore_message, nullptr); }
+inline void silence_erkstep(void* solver) {
+  ERKStepSetErrHandlerFn(solver, ignore_message, nullptr);
+}
 #endif
+
+/// Before 6.6 ERKStep takes the last stage of every table that ends at c = 1 for y' at the end of
+/// the step, which is true of first-same-as-last tables only. Cf. the project's issue 311.
+inline constexpr bool erkstep_reuses_last_stage =
+    SUNDIALS_VERSION_MAJOR < 6 || (SUNDIALS_VERSION_MAJOR == 6 && SUNDIALS_VERSION_MINOR < 6);
 
 }  // namespace kairos::integrators::sundials
