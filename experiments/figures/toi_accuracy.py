@@ -26,11 +26,11 @@ def draw(data, figures):
     for panel in panels:
         panel.set_xscale("log")
         panel.set_yscale("log")
-        panel.set_xlabel("tolerance / m (FCL: of the window)")
+        panel.set_xlabel("tolerance asked for / m")
         panel.invert_xaxis()
     panels[0].set_ylabel("error of the time of impact / s")
     panels[0].set_title("How far off: median, and worst (filled)")
     panels[1].set_ylabel("evaluations of one query")
-    panels[1].set_title("What it costs")
+    panels[1].set_title("What it costs (FCL does not tell)")
     style.legend_below(figure, panels[:1], columns=4)
     figures.save(figure, "toi_accuracy", data.entry("caption"))

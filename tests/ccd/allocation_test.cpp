@@ -1,9 +1,9 @@
 // Queries do not allocate: every `new` of the process is counted.
 #include "ccd/certified.hpp"
 #include "ccd/conservative_advancement.hpp"
+#include "experiments/accuracy/random_query.hpp"
 #include "tests/allocations.hpp"
 #include "tests/catch.hpp"
-#include "experiments/accuracy/random_query.hpp"
 
 using namespace kairos;
 using namespace kairos::reference;

@@ -3,8 +3,8 @@
 #include "ccd/all_pairs.hpp"
 #include "ccd/dynamic_tree.hpp"
 #include "ccd/sweep_and_prune.hpp"
-#include "tests/catch.hpp"
 #include "experiments/accuracy/reference.hpp"
+#include "tests/catch.hpp"
 
 #include <algorithm>
 

@@ -4,8 +4,8 @@
 #include "ccd/conservative_advancement.hpp"
 #include "ccd/sat.hpp"
 #include "ccd/step_ends.hpp"
-#include "tests/catch.hpp"
 #include "experiments/accuracy/random_query.hpp"
+#include "tests/catch.hpp"
 
 #include <memory>
 #include <numbers>

@@ -2,8 +2,8 @@
 // shapes: what DESIGN promises, judged by the reference. KAIROS_CCD_QUERIES (per class and pair)
 // makes it longer; the seed of a failure is in its message.
 #include "ccd/certified.hpp"
-#include "tests/catch.hpp"
 #include "experiments/accuracy/random_query.hpp"
+#include "tests/catch.hpp"
 
 #include <cstdlib>
 
