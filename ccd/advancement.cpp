@@ -400,9 +400,9 @@ double default_tolerance(const MovingShape& a, const MovingShape& b, const Windo
     }
     apart = std::min(apart, reached(d, s_a));
   }
-  // Roundoff: 64 u of the largest coordinates that the motions reach, and 256 u of what is turned
-  // and projected, which is how far the bounds of a separation's rounding go.
-  return 1e-9 * extent + 64.0 * u * coordinates + 256.0 * u * (apart + radii);
+  // Roundoff: 64 u of the largest coordinates that the motions reach, and twice the bound of a
+  // separation's rounding, 96 u (|d|_1 + |A|_1 + |B|_1), with |d|_1 <= 3 |d|.
+  return 1e-9 * extent + 64.0 * u * coordinates + 640.0 * u * (apart + radii);
 }
 
 TimeOfImpact advance_to_impact(const MovingShape& a, const MovingShape& b, const Window& window,

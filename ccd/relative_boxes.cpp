@@ -77,4 +77,21 @@ Vector3 axis_normal(const RelativeBoxes& s, const AxisSeparation& axis) {
   return n * (axis.sign / axis.length);
 }
 
+Verdict classify(const RelativeBoxes& s, int& axis) {
+  const double error = s.error();
+  const auto separates = [&](int candidate) { return axis_separation(s, candidate).value > error; };
+  if (separates(axis)) {
+    return Verdict::separated;
+  }
+  const Verdict verdict = classify(s);
+  if (verdict == Verdict::separated) {
+    // The greatest separation lasts longest, unless it is within rounding itself.
+    axis = greatest_separation(s).axis;
+    for (int other = 0; !separates(axis); ++other) {
+      axis = other;
+    }
+  }
+  return verdict;
+}
+
 }  // namespace kairos::ccd

@@ -57,6 +57,10 @@ enum class Verdict { separated, overlapping, undecided };
 /// arguments are, `undecided` means that rounding could have decided.
 [[nodiscard]] Verdict classify(const RelativeBoxes& boxes);
 [[nodiscard]] Verdict classify(const OrientedBox& a, const OrientedBox& b);
+/// The same with coherence: `axis` is asked first, the one that separated these boxes when they
+/// were last looked at (any at first); where others have to be asked it becomes one that separates
+/// now.
+[[nodiscard]] Verdict classify(const RelativeBoxes& boxes, int& axis);
 [[nodiscard]] Verdict classify(const Vector3& half_a, const Matrix3& R_WA, const Vector3& half_b,
                                const Matrix3& R_WB, const Vector3& d_W);
 
