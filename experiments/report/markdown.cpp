@@ -44,6 +44,18 @@ std::string citations(std::string_view keys, const Placeholder& placeholder) {
   return out + "]";
 }
 
+/// [text](#place) of the same page; empty, and nothing moved, where there is none.
+std::string local_link(std::string_view text, std::size_t& at) {
+  std::size_t end = at;
+  const std::string_view words = enclosed(text, end, "[", "]");
+  const std::string_view place = words.empty() ? words : enclosed(text, end, "(#", ")");
+  if (place.empty()) {
+    return "";
+  }
+  at = end;
+  return fmt::format("<a href=\"#{}\">{}</a>", html(place), html(words));
+}
+
 /// Words of a heading as an identifier.
 std::string slug(std::string_view text) {
   std::string out;
@@ -178,6 +190,8 @@ std::string inline_html(std::string_view text, const Placeholder& placeholder) {
       out += resolved(inside, placeholder);
     } else if (const auto keys = enclosed(text, at, "[@", "]"); !keys.empty()) {
       out += citations(keys, placeholder);
+    } else if (const std::string link = local_link(text, at); !link.empty()) {
+      out += link;
     } else {
       out += html(text.substr(at++, 1));
     }

@@ -27,7 +27,8 @@ struct MarkdownPage {
 [[nodiscard]] MarkdownPage markdown_html(std::string_view text, const std::string& id_prefix,
                                          const Placeholder& placeholder);
 
-/// One line of it: `code`, **strong**, *emphasis*, {{kind:what}}, [@Key]; everything else escaped.
+/// One line of it: `code`, **strong**, *emphasis*, and with a placeholder {{kind:what}}, [@Key] and
+/// [text](#place); everything else escaped.
 [[nodiscard]] std::string inline_html(std::string_view text, const Placeholder& placeholder = {});
 
 }  // namespace kairos::experiments

@@ -74,12 +74,14 @@ TEST_CASE("the Markdown of the paper: headings, lists, marks, and nothing passes
     return std::string("<i>42</i>");
   };
   const MarkdownPage page = markdown_html(
-      "# Title\n\n## A <part>\n\nOne *two* **three**\n`4 < 5` {{value:a.b}}\nsee [@X; @Y].\n\n"
+      "# Title\n\n## A <part>\n\nOne *two* **three**\n`4 < 5` {{value:a.b}} [in](#place) [no] "
+      "(#x)\nsee [@X; @Y].\n\n"
       "- first\n  goes on\n- second\n\n1. one\n\n{{figure:f}}\n\n```\n<code>\n```\nEnd * here.\n",
       "p-", placeholder);
   CHECK(page.html ==
         "<h3 id=\"p-a-part-\">A &lt;part&gt;</h3>\n"
-        "<p>One <em>two</em> <strong>three</strong> <code>4 &lt; 5</code> <i>42</i> see "
+        "<p>One <em>two</em> <strong>three</strong> <code>4 &lt; 5</code> <i>42</i> <a "
+        "href=\"#place\">in</a> [no] (#x) see "
         "[<i>42</i>, <i>42</i>].</p>\n"
         "<ul>\n<li>first goes on</li>\n<li>second</li>\n</ul>\n<ol>\n<li>one</li>\n</ol>\n"
         "<i>42</i><pre><code>&lt;code&gt;\n</code></pre>\n<p>End * here.</p>\n");

@@ -44,8 +44,9 @@ def draw(data, figures):
     for method in methods:
         given = [row["answer"] for row in pick(answers, method=method)]
         usual[method] = max(set(map(str, given)), key=lambda a: [str(g) for g in given].count(a))
-    card(panel, 0.0, 0.0, 2.9, f"{root} of a body", [common, [m + "()" for m in methods]])
-    for i, row in enumerate(classes):
+    bottoms = [0.3, 0.3, 0.3]  # of each column of cards, the gap to the next one included
+    base = card(panel, 0.0, 0.0, 2.9, f"{root} of a body", [common, [m + "()" for m in methods]])
+    for row in classes:
         keys = [f"{key['key']} = {key['default']:g}" + (f" {key['unit']}" if key["unit"] else "")
                 for key in pick(attributes, entity=row["entity"])]
         traits = [f"type {row['physics_type']}, {row['mobility']}"]
@@ -55,10 +56,10 @@ def draw(data, figures):
                    for a in [pick(answers, entity=row["entity"], method=method)[0]["answer"]]
                    if str(a) != usual[method]]
         sections = [lines for lines in (traits, keys, differs) if lines]
-        column, line = i % 3, i // 3
-        card(panel, 3.5 + 3.55 * column, -2.75 * line, 3.35, f"{row['class']} : {row['parent']}",
-             sections)
+        column = bottoms.index(max(bottoms))
+        bottoms[column] = card(panel, 3.5 + 3.55 * column, bottoms[column] - 0.3, 3.35,
+                               f"{row['class']} : {row['parent']}", sections)
     panel.set_xlim(-0.15, 14.2)
-    panel.set_ylim(-9.0, 0.2)
+    panel.set_ylim(min(base, *bottoms) - 0.2, 0.2)
     panel.axis("off")
     figures.save(figure, "fig10", data.entry("caption"))
