@@ -1,4 +1,5 @@
 #include "core/body_reader.hpp"
+#include "core/def_reader.hpp"
 #include "core/document.hpp"
 #include "core/error.hpp"
 #include "core/exact_solution.hpp"
@@ -133,7 +134,7 @@ Scene read(const TableReader& table, const std::string& path) {
 
 Scene parse_scene(std::string_view text, const std::string& path,
                   const std::vector<Override>& overrides) {
-  Value root = parse_document(text, path);
+  Value root = is_def_file(path) ? parse_def(text, path) : parse_document(text, path);
   apply_overrides(root, overrides);
   // The root is the whole file: what is missing there has no line.
   root.line = 0;

@@ -39,7 +39,7 @@ std::vector<std::string> shipped_scenes() {
   std::vector<std::string> names;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(scene_folder(), error)) {
-    if (entry.path().extension() == ".toml") {
+    if (entry.path().extension() == ".toml" || entry.path().extension() == ".def") {
       names.push_back(entry.path().stem().string());
     }
   }
@@ -47,10 +47,17 @@ std::vector<std::string> shipped_scenes() {
   return names;
 }
 
+std::string shipped_scene_path(const std::string& name) {
+  std::error_code error;
+  const fs::path thesis = fs::path(scene_folder()) / (name + ".def");
+  return (fs::is_regular_file(thesis, error) ? thesis : fs::path(scene_folder()) / (name + ".toml"))
+      .string();
+}
+
 std::string find_scene(const std::string& path_or_name) {
   const std::vector<std::string> names = shipped_scenes();
   if (std::find(names.begin(), names.end(), path_or_name) != names.end()) {
-    return (fs::path(scene_folder()) / (path_or_name + ".toml")).string();
+    return shipped_scene_path(path_or_name);
   }
   std::error_code error;
   if (fs::exists(path_or_name, error) && !fs::is_directory(path_or_name, error)) {

@@ -48,7 +48,9 @@ void add_commands(CLI::App& app) {
   add_sweep_command(app);
   add_experiment_command(app);
   add_reproduce_command(app);
+  add_render_command(app);
   add_record_command(app);
+  add_physworld_command(app);
   add_bench_command(app);
 }
 

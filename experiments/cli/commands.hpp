@@ -17,6 +17,8 @@ void add_sweep_command(CLI::App& app);
 void add_experiment_command(CLI::App& app);
 void add_reproduce_command(CLI::App& app);
 void add_record_command(CLI::App& app);
+void add_render_command(CLI::App& app);
+void add_physworld_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 
 }  // namespace kairos::experiments

@@ -47,6 +47,29 @@ void add_scene(JsonWriter& json, const Scene& scene) {
   json.close();
 }
 
+/// What a picture of the run needs to know of each body; `kairos render` reads it.
+void add_bodies(JsonWriter& json, const Model& model) {
+  constexpr std::string_view movers[] = {"fixed", "driven", "free"};
+  json.open("bodies");
+  for (BodyIndex i = 0; i < model.size(); ++i) {
+    const Body& body = model.body(i);
+    json.open(body.name);
+    json.text("entity", body.entity->kind());
+    json.text("shape", shape_name(body.shape));
+    if (!std::holds_alternative<HalfSpace>(body.shape)) {
+      const Vector3 h = bounding_box(body.shape).half_extents;
+      json.number("hx", h.x());
+      json.number("hy", h.y());
+      json.number("hz", h.z());
+    }
+    json.text("bounds", bounds_name(body.bounds));
+    json.text("moves", movers[static_cast<std::size_t>(model.mobility(i))]);
+    json.flag("field", model.is_field(i));
+    json.close();
+  }
+  json.close();
+}
+
 void add_method(JsonWriter& json, const FinishedRun& run) {
   const RunChoice& choice = run.choice;
   const Scene& scene = run.model.scene();
@@ -126,6 +149,7 @@ std::string_view status_name(RunStatus status) {
 std::string summary_json(const FinishedRun& run) {
   JsonWriter json;
   add_scene(json, run.model.scene());
+  add_bodies(json, run.model);
   add_method(json, run);
   json.open("versions");
   for (const auto& [name, version] : versions()) {

@@ -13,7 +13,7 @@ struct PathPoint {
 };
 
 /// How a person moves a hand: from rest to rest along a straight line, each time with the least
-/// jerk, s(x) = 10 x^3 - 15 x^4 + 6 x^5 [Flash1985, eq. 3]; turns follow the same law. Between two
+/// jerk, s(x) = 10 x^3 - 15 x^4 + 6 x^5 [Flash1985]; turns follow the same law. Between two
 /// moves it holds still. The greatest speed of a move over the distance d in the time T is
 /// 15/8 d/T, half way.
 class HandPath {

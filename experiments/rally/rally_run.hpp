@@ -12,7 +12,7 @@ namespace kairos::experiments {
 /// One way to play a rally: a method, and what the bat does to what it hits.
 struct RallyMethod {
   std::string name;
-  RunChoice choice;
+  RunChoice choice = {};
   double nudge = 0.0;        ///< s, 13.9
   double nudge_prose = 0.0;  ///< s, 7.4
   double bat_mass = 0.18;    ///< kg

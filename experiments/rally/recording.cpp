@@ -34,11 +34,11 @@ double error(Random& random, double deviation) {
 /// A number as the files hold it: a multiple of 1/`parts`.
 double rounded(double x, double parts) { return std::round(x * parts) / parts; }
 
-/// The bat's face looks along `direction`, tipped by `angle` about the bat's width.
+/// One of the bat's two faces looks along `direction`, tipped by `angle` about the bat's width.
 Quaternion facing(const Vector3& direction, double angle) {
   const Vector3 width = Vector3::UnitY().cross(direction).normalized();
-  return rotate(angle * width, Quaternion::FromTwoVectors(-Vector3::UnitZ(), direction))
-      .normalized();
+  const Vector3 face = direction.z() < 0.0 ? Vector3(-Vector3::UnitZ()) : Vector3(Vector3::UnitZ());
+  return rotate(angle * width, Quaternion::FromTwoVectors(face, direction)).normalized();
 }
 
 struct Paths {
@@ -46,32 +46,51 @@ struct Paths {
   HandPath hand;
 };
 
-Stroke make_stroke(double begin, const RallyOptions& options, Random& random, Paths& paths) {
-  Stroke stroke;
-  stroke.begin = begin;
-  stroke.release = begin + serve_time;
-  stroke.end = begin + period;
-  stroke.speed = random.uniform(options.slowest, options.fastest);
-  stroke.place = {random.uniform(-0.15, 0.15), random.uniform(0.95, 1.05),
-                  random.uniform(0.8, 0.9)};
-  const double drop = random.uniform(0.18, 0.3);
-  stroke.hit = stroke.release + std::sqrt(2.0 * drop / g) + error(random, timing_error);
+/// Where a stroke goes, and when.
+struct StrokePlan {
+  double begin = 0.0;                   ///< s
+  double speed = 0.0;                   ///< m/s
+  double drop = 0.0;                    ///< m, from the hand to the bat
+  Vector3 place = Vector3::Zero();      ///< where the ball is to be hit
+  Vector3 rest = rest_of_hand;          ///< where the hand draws back to
+  Vector3 direction = Vector3::Zero();  ///< of the stroke, unit
+  Vector3 aim_error = Vector3::Zero();  ///< m
+  double timing_error = 0.0;            ///< s
+};
 
-  const Pose serve{stroke.place + Vector3(0.0, drop, 0.0), Quaternion::Identity()};
-  paths.hand.move(begin + 0.05, begin + 0.4, serve);
-  paths.hand.move(stroke.release + 0.02, stroke.release + 0.3,
-                  {rest_of_hand, Quaternion::Identity()});
-
-  const Vector3 direction =
-      Vector3(random.uniform(-0.15, 0.15), random.uniform(0.0, 0.3), -1.0).normalized();
-  const Vector3 aim = stroke.place + Vector3(error(random, aim_error), error(random, aim_error), 0);
-  const double time = 15.0 / 8.0 * reach / stroke.speed;
+/// The hand fetches the ball, lifts it above the place, lets go and draws back; the bat comes when
+/// the ball has fallen so far.
+Stroke perform(const StrokePlan& plan, Paths& paths) {
+  Stroke stroke{.begin = plan.begin,
+                .release = plan.begin + serve_time,
+                .end = plan.begin + period,
+                .speed = plan.speed,
+                .place = plan.place};
+  stroke.hit = stroke.release + std::sqrt(2.0 * plan.drop / g) + plan.timing_error;
+  const Pose serve{plan.place + Vector3(0.0, plan.drop, 0.0), Quaternion::Identity()};
+  paths.hand.move(plan.begin + 0.05, plan.begin + 0.4, serve);
+  paths.hand.move(stroke.release + 0.02, stroke.release + 0.3, {plan.rest, Quaternion::Identity()});
+  const Vector3 aim = plan.place + plan.aim_error;
+  const Vector3 half = 0.5 * reach * plan.direction;
+  const double time = 15.0 / 8.0 * reach / plan.speed;
   const double swing_begin = stroke.hit - 0.5 * time;
-  paths.bat.move(begin - 0.25, begin + 0.3,
-                 {aim - 0.5 * reach * direction, facing(direction, wrist * degree)});
+  paths.bat.move(plan.begin - 0.25, plan.begin + 0.3,
+                 {aim - half, facing(plan.direction, wrist * degree)});
   paths.bat.move(swing_begin, swing_begin + time,
-                 {aim + 0.5 * reach * direction, facing(direction, -wrist * degree)});
+                 {aim + half, facing(plan.direction, -wrist * degree)});
   return stroke;
+}
+
+StrokePlan random_stroke(double begin, const RallyOptions& options, Random& random) {
+  StrokePlan plan{.begin = begin};
+  plan.speed = random.uniform(options.slowest, options.fastest);
+  plan.place = {random.uniform(-0.15, 0.15), random.uniform(0.95, 1.05), random.uniform(0.8, 0.9)};
+  plan.drop = random.uniform(0.18, 0.3);
+  plan.timing_error = error(random, timing_error);
+  plan.direction =
+      Vector3{random.uniform(-0.15, 0.15), random.uniform(0.0, 0.3), -1.0}.normalized();
+  plan.aim_error = {error(random, aim_error), error(random, aim_error), 0.0};
+  return plan;
 }
 
 /// What a tracker tells of a path, one sample per 1/rate from `first` on.
@@ -95,23 +114,16 @@ std::vector<TrackSample> sampled(const HandPath& path, double first, double last
   return samples;
 }
 
-void append_pose(CsvRow& row, const TrackSample& sample) {
-  row.number(sample.time).vector(sample.pose.position);
+Paths paths_at_rest() {
+  return {HandPath({Vector3(0.0, 0.95, 1.2), facing(-Vector3::UnitZ(), wrist * degree)}),
+          HandPath({rest_of_hand, Quaternion::Identity()})};
 }
 
-}  // namespace
-
-RallyRecording make_rally(const RallyOptions& options) {
-  Random random(options.seed, plan);
+/// What the trackers make of the paths.
+RallyRecording recorded(std::vector<Stroke> strokes, const Paths& paths, double bat_phase,
+                        double hand_phase, const RallyOptions& options) {
   RallyRecording rally;
-  Paths paths{HandPath({Vector3(0.0, 0.95, 1.2), facing(-Vector3::UnitZ(), wrist * degree)}),
-              HandPath({rest_of_hand, Quaternion::Identity()})};
-  // The two trackers and the frames each have a clock of their own.
-  const double bat_phase = random.uniform() / options.rate;
-  const double hand_phase = random.uniform() / options.rate;
-  for (int k = 0; k < options.strokes; ++k) {
-    rally.strokes.push_back(make_stroke(k * period + 0.25, options, random, paths));
-  }
+  rally.strokes = std::move(strokes);
   const double last = rally.duration();
   rally.bat.samples = sampled(paths.bat, bat_phase, last, bat_noise, options);
   for (const TrackSample& sample : rally.bat.samples) {
@@ -126,6 +138,39 @@ RallyRecording make_rally(const RallyOptions& options) {
     });
   }
   return rally;
+}
+
+void append_pose(CsvRow& row, const TrackSample& sample) {
+  row.number(sample.time).vector(sample.pose.position);
+}
+
+}  // namespace
+
+RallyRecording make_rally(const RallyOptions& options) {
+  Random random(options.seed, plan);
+  Paths paths = paths_at_rest();
+  // The two trackers and the frames each have a clock of their own.
+  const double bat_phase = random.uniform() / options.rate;
+  const double hand_phase = random.uniform() / options.rate;
+  std::vector<Stroke> strokes;
+  for (int k = 0; k < options.strokes; ++k) {
+    strokes.push_back(perform(random_stroke(k * period + 0.25, options, random), paths));
+  }
+  return recorded(std::move(strokes), paths, bat_phase, hand_phase, options);
+}
+
+RallyRecording make_session(const RallyOptions& options) {
+  Paths paths = paths_at_rest();
+  StrokePlan down_right{.begin = 0.25, .speed = 3.0, .drop = 0.2};
+  down_right.place = {-0.1, 1.12, 0.55};
+  down_right.rest = {-0.65, 1.5, 0.5};  // out of the way of the bat
+  down_right.direction = Vector3(0.7, -0.4, -0.7).normalized();
+  StrokePlan to_viewer{.begin = 2.25, .speed = 3.0, .drop = 0.2};
+  to_viewer.place = {0.0, 1.15, 0.25};
+  to_viewer.rest = down_right.rest;
+  to_viewer.direction = Vector3(0.12, 0.1, 1.0).normalized();
+  std::vector<Stroke> strokes{perform(down_right, paths), perform(to_viewer, paths)};
+  return recorded(std::move(strokes), paths, 0.3 / options.rate, 0.7 / options.rate, options);
 }
 
 std::string bat_csv(const RallyRecording& rally) {

@@ -43,6 +43,10 @@ struct RallyRecording {
 /// The same options, the same bits. Numbers are those that the CSV files hold.
 [[nodiscard]] RallyRecording make_rally(const RallyOptions& options);
 
+/// What ch. 8.2 tells: a stroke down and to the right, the hand fetches the ball and drops it, and
+/// a stroke towards the viewer. Noise and seed of the options count, the rest is told by the story.
+[[nodiscard]] RallyRecording make_session(const RallyOptions& options);
+
 /// As a CSV file that `[body.drive] track` reads. The bat's has the true velocity in three columns
 /// more, which readers of tracks ignore.
 [[nodiscard]] std::string bat_csv(const RallyRecording& rally);

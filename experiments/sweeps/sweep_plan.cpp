@@ -203,7 +203,7 @@ std::string scene_path(const SweepSpec& spec) {
   // A shipped name means the shipped scene, whatever lies about where the program is started.
   const std::vector<std::string> shipped = shipped_scenes();
   if (std::find(shipped.begin(), shipped.end(), spec.scene) != shipped.end()) {
-    return (std::filesystem::path(scene_folder()) / (spec.scene + ".toml")).string();
+    return shipped_scene_path(spec.scene);
   }
   try {
     return find_scene(spec.scene);

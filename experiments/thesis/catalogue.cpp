@@ -19,6 +19,10 @@ ThesisFigure get_and_give();
 ThesisFigure hierarchy();
 ThesisFigure class_diagram();
 ThesisFigure table_tennis();
+ThesisFigure table_tennis_scene();
+ThesisFigure bat_and_ball();
+ThesisFigure physworld();
+ThesisFigure table_tennis_in_the_flesh();
 ThesisFigure sinking_ball();
 ThesisFigure swept_box_of_geometric();
 ThesisFigure improved_flow_of_events();
@@ -39,7 +43,11 @@ std::span<const ThesisFigure> thesis_figures() {
       thesis::get_and_give(),
       thesis::hierarchy(),
       thesis::class_diagram(),
+      thesis::table_tennis_scene(),
+      thesis::bat_and_ball(),
       thesis::table_tennis(),
+      thesis::physworld(),
+      thesis::table_tennis_in_the_flesh(),
       thesis::sinking_ball(),
       thesis::swept_box_of_geometric(),
       thesis::improved_flow_of_events(),

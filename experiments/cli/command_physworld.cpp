@@ -1,0 +1,55 @@
+#include "experiments/cli/commands.hpp"
+#include "experiments/output/atomic_file.hpp"
+#include "experiments/physworld/search.hpp"
+#include "experiments/run_error.hpp"
+#include "experiments/scene_library.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace kairos::experiments {
+namespace {
+
+struct PhysworldCommand {
+  std::uint64_t seed = 1;
+  std::int64_t tries = 200000;
+  std::string out;
+
+  void run() const {
+    // Models are looked for beside the shipped scenes.
+    const auto beside = std::filesystem::path(scene_folder()) / "physworld.def";
+    const SearchResult found = search_physworld(seed, tries, beside.string());
+    if (found.def.empty()) {
+      throw RunError(fmt::format("no world in {} tries with seed {}", tries, seed));
+    }
+    if (out.empty()) {
+      fmt::print("{}", found.def);
+    } else {
+      write_file(out, found.def);
+    }
+    fmt::print(stderr, "found at try {} with seed {}\n", found.tries, seed);
+  }
+};
+
+}  // namespace
+
+void add_physworld_command(CLI::App& app) {
+  const auto command = std::make_shared<PhysworldCommand>();
+  CLI::App* physworld = app.add_subcommand(
+      "physworld", "Look for the values of physworld.def that the thesis does not give (ch. 8.1)");
+  physworld->add_option("--seed", command->seed, "the same seed, the same world")
+      ->capture_default_str();
+  physworld->add_option("--tries", command->tries, "at most this many worlds")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{100000000}))
+      ->capture_default_str();
+  physworld->add_option("--out", command->out, "the .def file (default: stdout)")
+      ->type_name("FILE");
+  physworld->callback([command] { command->run(); });
+}
+
+}  // namespace kairos::experiments

@@ -1,0 +1,253 @@
+#include "experiments/render/footage.hpp"
+
+#include "core/csv.hpp"
+#include "core/document.hpp"
+#include "core/error.hpp"
+#include "experiments/sweeps/table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <system_error>
+
+namespace kairos::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Fields of a table by column name, with complaints that name file and line.
+class Rows {
+ public:
+  explicit Rows(const std::string& path) : path_(path), table_(read_csv(path)) {
+    for (std::size_t c = 0; c < table_.columns.size(); ++c) {
+      columns_[table_.columns[c]] = c;
+    }
+  }
+  [[nodiscard]] std::size_t size() const { return table_.rows.size(); }
+  [[nodiscard]] std::string text(std::size_t row, const std::string& column) const {
+    const auto found = columns_.find(column);
+    if (found == columns_.end()) {
+      throw InputError(path_, 1, column, "column is missing; is this what `kairos run` wrote?");
+    }
+    if (found->second >= table_.rows[row].size()) {
+      fail(row, column, "is missing (is the file truncated?)");
+    }
+    return to_text(table_.rows[row][found->second]);
+  }
+  [[nodiscard]] double number(std::size_t row, const std::string& column) const {
+    const std::string field = text(row, column);
+    const auto x = parse_number(field);
+    if (!x) {
+      fail(row, column, fmt::format("\"{}\" is no number; allowed: a finite number", field));
+    }
+    return *x;
+  }
+  [[nodiscard]] Vector3 vector(std::size_t row, const char* x, const char* y, const char* z) const {
+    return {number(row, x), number(row, y), number(row, z)};
+  }
+  [[noreturn]] void fail(std::size_t row, const std::string& column,
+                         const std::string& reason) const {
+    throw InputError(path_, static_cast<int>(row) + 2, column, reason);
+  }
+
+ private:
+  std::string path_;
+  Table table_;
+  std::map<std::string, std::size_t> columns_;
+};
+
+/// The bodies of a `summary.json`, which holds one member a line, as `JsonWriter` writes it.
+class Summary {
+ public:
+  explicit Summary(const std::string& path) : path_(path) {
+    const std::string text = read_text_file(path);
+    std::string_view rest = text;
+    std::vector<std::string> open;
+    for (int line = 1; !rest.empty(); ++line) {
+      const std::size_t end = rest.find('\n');
+      read_line(trimmed(rest.substr(0, end)), line, open);
+      rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+    }
+    if (bodies_.empty()) {
+      throw InputError(path, 0, "bodies", "is missing; is this what `kairos run` wrote?");
+    }
+  }
+
+  [[nodiscard]] std::vector<Actor> actors() const {
+    std::vector<Actor> actors;
+    for (const Fields& body : bodies_) {
+      actors.push_back(actor(body));
+    }
+    return actors;
+  }
+
+ private:
+  struct Fields {
+    std::string name;
+    int line = 0;
+    std::map<std::string, std::string> values{};
+  };
+
+  static std::string unquoted(std::string_view text) {
+    const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
+    return std::string(quoted ? text.substr(1, text.size() - 2) : text);
+  }
+
+  void read_line(std::string_view line, int number, std::vector<std::string>& open) {
+    if (line.starts_with('}')) {
+      if (!open.empty()) {
+        open.pop_back();
+      }
+      return;
+    }
+    const std::size_t colon = line.find("\": ");
+    if (colon == std::string_view::npos) {
+      return;
+    }
+    const std::string key = unquoted(line.substr(0, colon + 1));
+    std::string_view value = trimmed(line.substr(colon + 3));
+    if (value == "{") {
+      open.push_back(key);
+      if (open.size() == 2 && open.front() == "bodies") {
+        bodies_.push_back({key, number});
+      }
+      return;
+    }
+    if (value.ends_with(',')) {
+      value.remove_suffix(1);
+    }
+    if (open.size() == 2 && open.front() == "bodies") {
+      bodies_.back().values[key] = unquoted(value);
+    }
+  }
+
+  [[noreturn]] void fail(const Fields& body, const std::string& key,
+                         const std::string& reason) const {
+    throw InputError(path_, body.line, fmt::format("bodies.{}.{}", body.name, key), reason);
+  }
+  [[nodiscard]] const std::string& field(const Fields& body, const std::string& key) const {
+    const auto found = body.values.find(key);
+    if (found == body.values.end()) {
+      fail(body, key, "is missing (is the file truncated?)");
+    }
+    return found->second;
+  }
+  [[nodiscard]] double extent(const Fields& body, const std::string& key) const {
+    const auto x = parse_number(field(body, key));
+    if (!x || !(*x > 0.0)) {
+      fail(body, key, fmt::format("is {}; allowed: a number > 0 (m)", field(body, key)));
+    }
+    return *x;
+  }
+
+  [[nodiscard]] Actor actor(const Fields& body) const {
+    Actor actor;
+    actor.name = body.name;
+    actor.entity = field(body, "entity");
+    const std::string& shape = field(body, "shape");
+    if (shape == "sphere") {
+      actor.shape = Sphere{extent(body, "hx")};
+    } else if (shape == "box") {
+      actor.shape = Box{{extent(body, "hx"), extent(body, "hy"), extent(body, "hz")}};
+    } else if (shape == "half-space") {
+      actor.shape = HalfSpace{};
+    } else {
+      fail(body, "shape", fmt::format("is \"{}\"; allowed: sphere, box, half-space", shape));
+    }
+    const bool as_box = field(body, "bounds") == "obb" && shape != "half-space";
+    actor.collides_as = as_box ? Shape(bounding_box(actor.shape)) : actor.shape;
+    actor.is_free = field(body, "moves") == "free";
+    actor.is_field = field(body, "field") == "true";
+    return actor;
+  }
+
+  std::string path_;
+  std::vector<Fields> bodies_;
+};
+
+void read_pictures(const Rows& rows, Footage& footage) {
+  std::map<std::string, std::size_t> index;
+  for (std::size_t i = 0; i < footage.actors.size(); ++i) {
+    index[footage.actors[i].name] = i;
+  }
+  std::vector<Pose> poses(footage.actors.size());
+  std::size_t seen = 0;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const auto body = index.find(rows.text(row, "body"));
+    if (body == index.end()) {
+      rows.fail(row, "body", fmt::format("\"{}\" is not in summary.json", rows.text(row, "body")));
+    }
+    Pose& pose = poses[body->second];
+    pose.position = rows.vector(row, "px", "py", "pz");
+    pose.orientation = Quaternion(rows.number(row, "qw"), rows.number(row, "qx"),
+                                  rows.number(row, "qy"), rows.number(row, "qz"));
+    if (!(std::abs(pose.orientation.norm() - 1.0) < 1e-6)) {  // printed digits
+      rows.fail(row, "qw", "is no unit quaternion");
+    }
+    if (++seen == poses.size()) {
+      footage.pictures.push_back({rows.number(row, "t"), poses});
+      seen = 0;
+    }
+  }
+}
+
+}  // namespace
+
+std::size_t Footage::at(double time) const {
+  // What rounding may put before a frame's time belongs to that frame.
+  const double slack = 1e-9 * (1.0 + std::abs(time));
+  const auto after =
+      std::upper_bound(pictures.begin(), pictures.end(), time + slack,
+                       [](double t, const Picture& picture) { return t < picture.time; });
+  return after == pictures.begin() ? 0 : static_cast<std::size_t>(after - pictures.begin()) - 1;
+}
+
+std::vector<Actor> actors_of(const Model& model) {
+  std::vector<Actor> actors;
+  for (BodyIndex i = 0; i < model.size(); ++i) {
+    const Body& body = model.body(i);
+    actors.push_back({body.name, std::string(body.entity->kind()), body.shape, model.shape(i),
+                      model.is_free(i), model.is_field(i)});
+  }
+  return actors;
+}
+
+void FootageRecorder::begin(const Model& model) {
+  footage_ = {};
+  footage_.title = model.scene().name;
+  footage_.actors = actors_of(model);
+}
+
+void FootageRecorder::frame(const Frame& frame) {
+  Footage::Picture& picture = footage_.pictures.emplace_back();
+  picture.time = frame.time.seconds;
+  for (const BodyState& body : frame.bodies) {
+    picture.poses.push_back(body.pose);
+  }
+}
+
+Footage read_footage(const std::string& path) {
+  std::error_code error;
+  const fs::path trajectory =
+      fs::is_directory(path, error) ? fs::path(path) / "trajectory.csv" : fs::path(path);
+  const fs::path summary = trajectory.parent_path() / "summary.json";
+  for (const fs::path& file : {trajectory, summary}) {
+    if (!fs::is_regular_file(file, error)) {
+      throw InputError(file.string(), 0, "",
+                       "is not there; needed: the folder that `kairos run SCENE --out DIR` wrote");
+    }
+  }
+  Footage footage;
+  footage.title = fs::absolute(trajectory).parent_path().filename().string();
+  footage.actors = Summary(summary.string()).actors();
+  read_pictures(Rows(trajectory.string()), footage);
+  if (footage.pictures.empty()) {
+    throw InputError(trajectory.string(), 0, "", "holds no frame");
+  }
+  return footage;
+}
+
+}  // namespace kairos::experiments

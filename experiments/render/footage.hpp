@@ -1,0 +1,53 @@
+#pragma once
+
+#include "core/model.hpp"
+#include "core/recorder.hpp"
+
+#include <string>
+#include <vector>
+
+namespace kairos::experiments {
+
+/// What a picture needs to know of a body.
+struct Actor {
+  std::string name;
+  std::string entity;
+  Shape shape;           ///< as it is seen
+  Shape collides_as;     ///< its box where it collides as one
+  bool is_free = false;  ///< moved by forces and impacts
+  bool is_field = false;
+};
+
+/// A run as a person saw it: bodies, and where they were in each drawn frame.
+struct Footage {
+  struct Picture {
+    double time = 0.0;  ///< s
+    std::vector<Pose> poses;
+  };
+  std::string title;  ///< of the scene
+  std::string method;
+  std::vector<Actor> actors;
+  std::vector<Picture> pictures;
+
+  /// Index of the last picture drawn at `time` or before; the first one before that. Not empty.
+  [[nodiscard]] std::size_t at(double time) const;
+};
+
+[[nodiscard]] std::vector<Actor> actors_of(const Model& model);
+
+/// Keeps the drawn frames of a run.
+class FootageRecorder : public Recorder {
+ public:
+  void begin(const Model& model) override;
+  void frame(const Frame& frame) override;
+  [[nodiscard]] const Footage& footage() const { return footage_; }
+
+ private:
+  Footage footage_;
+};
+
+/// Reads what `kairos run --out` left: a folder, or its `trajectory.csv` with `summary.json` beside
+/// it. Throws `InputError` with the file and line of what is missing or wrong.
+[[nodiscard]] Footage read_footage(const std::string& path);
+
+}  // namespace kairos::experiments

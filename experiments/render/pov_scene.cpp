@@ -1,0 +1,312 @@
+#include "experiments/render/pov_scene.hpp"
+
+#include "core/csv.hpp"
+#include "core/error.hpp"
+#include "experiments/registry.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace kairos::experiments {
+namespace {
+
+struct Colour {
+  std::string_view name;
+  double red, green, blue;
+};
+/// For balls without a colour in their name, in turn; those first that differ most in lightness.
+constexpr std::array<Colour, 6> palette{{{"red", 0.85, 0.15, 0.12},
+                                         {"blue", 0.12, 0.25, 0.75},
+                                         {"green", 0.15, 0.6, 0.2},
+                                         {"yellow", 0.95, 0.8, 0.15},
+                                         {"violet", 0.55, 0.2, 0.65},
+                                         {"orange", 0.95, 0.5, 0.1}}};
+
+std::string vec(const Vector3& v) {
+  return fmt::format("<{:.9g},{:.9g},{:.9g}>", v.x(), v.y(), v.z());
+}
+
+/// Body axes to the world, as POV-Ray writes a linear map.
+std::string matrix(const Pose& pose) {
+  const Matrix3 R = pose.orientation.toRotationMatrix();
+  const Vector3& p = pose.position;
+  return fmt::format(
+      "matrix <{:.9g},{:.9g},{:.9g}, {:.9g},{:.9g},{:.9g}, {:.9g},{:.9g},{:.9g}, "
+      "{:.9g},{:.9g},{:.9g}>",
+      R(0, 0), R(1, 0), R(2, 0), R(0, 1), R(1, 1), R(2, 1), R(0, 2), R(1, 2), R(2, 2), p.x(), p.y(),
+      p.z());
+}
+
+std::string pigment(const Colour& c, double transmit) {
+  return fmt::format("pigment {{ color rgb <{},{},{}> transmit {} }}", c.red, c.green, c.blue,
+                     transmit);
+}
+
+/// By its name, by what it is, or the next of the palette.
+Colour colour_of(const Actor& actor, std::size_t free_index) {
+  for (const Colour& colour : palette) {
+    if (actor.name.find(colour.name) != std::string::npos) {
+      return colour;
+    }
+  }
+  if (actor.is_free) {
+    return palette[(free_index + 5) % palette.size()];
+  }
+  if (actor.is_field) {
+    return {"", 0.35, 0.8, 0.9};
+  }
+  if (actor.entity == "bat") {
+    return {"", 0.75, 0.2, 0.2};
+  }
+  if (actor.entity == "hand") {
+    return {"", 0.9, 0.7, 0.55};
+  }
+  return actor.entity == "conveyor" ? Colour{"", 0.45, 0.42, 0.5} : Colour{"", 0.25, 0.45, 0.4};
+}
+
+/// Geometry alone, in body axes, so that it can be cut with another.
+std::string solid(const Shape& shape) {
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+    return fmt::format("sphere {{ 0, {:.9g} ", sphere->radius);
+  }
+  if (const auto* box = std::get_if<Box>(&shape)) {
+    return fmt::format("box {{ {}, {} ", vec(-box->half_extents), vec(box->half_extents));
+  }
+  return "plane { y, 0 ";
+}
+
+/// The twelve edges of a box.
+std::string wire(const Box& box, const Pose& pose, double thickness, const Colour& colour) {
+  const Vector3& h = box.half_extents;
+  std::string text = "union {\n";
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double u : {-1.0, 1.0}) {
+      for (const double v : {-1.0, 1.0}) {
+        Vector3 from;
+        from[axis] = -h[axis];
+        from[(axis + 1) % 3] = u * h[(axis + 1) % 3];
+        from[(axis + 2) % 3] = v * h[(axis + 2) % 3];
+        Vector3 to = from;
+        to[axis] = h[axis];
+        text += fmt::format("cylinder {{ {}, {}, {:.9g} }}\n", vec(from), vec(to), thickness);
+      }
+    }
+  }
+  return text + fmt::format("{} finish {{ emission 0.25 }} no_shadow {} }}\n", pigment(colour, 0.0),
+                            matrix(pose));
+}
+
+class Painter {
+ public:
+  Painter(const Footage& footage, std::size_t picture, const PictureOptions& options)
+      : footage_(footage),
+        picture_(footage.pictures[picture]),
+        options_(options),
+        common_(overlapping(footage, picture)),
+        thickness_(0.0016 * (options.camera.position - options.camera.target).norm()) {}
+
+  std::string paint() {
+    std::string text = head();
+    std::size_t free_index = 0;
+    for (std::size_t i = 0; i < footage_.actors.size(); ++i) {
+      const Actor& actor = footage_.actors[i];
+      const Colour colour = colour_of(actor, free_index);
+      free_index += actor.is_free ? 1 : 0;
+      text += body(i, colour);
+    }
+    for (const Overlapping& pair : common_) {
+      text += in_common(pair);
+    }
+    return text + label();
+  }
+
+ private:
+  std::string head() const {
+    const Camera& camera = options_.camera;
+    const Vector3 sun =
+        camera.position + Vector3(-0.4, 1.2, 0.2) * (camera.position - camera.target).norm();
+    // The minus sign makes POV-Ray's left-handed frame right-handed.
+    return fmt::format(
+        "#version 3.7;\nglobal_settings {{ assumed_gamma 1.0 }}\n"
+        "background {{ color rgb <0.93,0.94,0.96> }}\n"
+        "camera {{ perspective location {} right <-{:.9g},0,0> up <0,1,0> angle {:.9g} look_at {} "
+        "}}\n"
+        "light_source {{ {}, color rgb 0.85 }}\n"
+        "light_source {{ {}, color rgb 0.35 shadowless }}\n"
+        "#default {{ finish {{ ambient 0 diffuse 0.85 emission 0.12 }} }}\n",
+        vec(camera.position), static_cast<double>(options_.width) / options_.height, camera.angle,
+        vec(camera.target), vec(sun), vec(camera.position));
+  }
+
+  [[nodiscard]] bool overlaps(std::size_t i) const {
+    return std::any_of(common_.begin(), common_.end(),
+                       [i](const Overlapping& pair) { return pair.a == i || pair.b == i; });
+  }
+
+  std::string body(std::size_t i, const Colour& colour) const {
+    const Actor& actor = footage_.actors[i];
+    const Pose& pose = picture_.poses[i];
+    if (std::holds_alternative<HalfSpace>(actor.shape)) {
+      return fmt::format(
+          "plane {{ y, 0 pigment {{ checker color rgb 0.82 color rgb 0.74 scale "
+          "{:.9g} }} {} }}\n",
+          25.0 * thickness_, matrix(pose));
+    }
+    double transmit = actor.is_free ? 0.0 : 0.25;
+    if (actor.is_field) {
+      transmit = 0.72;
+    } else if (overlaps(i)) {
+      transmit = 0.55;  // what is common shows through
+    }
+    std::string text =
+        fmt::format("{} {} {} {} }}\n", solid(actor.shape), pigment(colour, transmit),
+                    actor.is_field ? "no_shadow" : "", matrix(pose));
+    const Colour dark{"", 0.5 * colour.red, 0.5 * colour.green, 0.5 * colour.blue};
+    if (const auto* box = std::get_if<Box>(&actor.shape)) {
+      text += wire(*box, pose, thickness_, dark);
+    } else if (const auto* bounds = std::get_if<Box>(&actor.collides_as);
+               bounds != nullptr && options_.boxes) {
+      text += wire(*bounds, pose, 0.6 * thickness_, dark);
+    }
+    return text;
+  }
+
+  std::string in_common(const Overlapping& pair) const {
+    std::string text = "intersection {\n";
+    for (const std::size_t i : {pair.a, pair.b}) {
+      text += solid(footage_.actors[i].collides_as) + matrix(picture_.poses[i]) + " }\n";
+    }
+    return text + "pigment { color rgb <1,0,0.8> } finish { emission 1 } no_shadow }\n";
+  }
+
+  /// Close before the eye.
+  std::string label() const {
+    const Camera& camera = options_.camera;
+    const Vector3 ahead = (camera.target - camera.position).normalized();
+    const Vector3 right = ahead.cross(Vector3::UnitY()).normalized();
+    const Vector3 up = right.cross(ahead);
+    const double half_width = std::tan(camera.angle * std::numbers::pi / 360.0);
+    const double half_height = half_width * options_.height / options_.width;
+    const double size = 0.13 * half_height;
+    // So near that nothing comes before it.
+    const double near = 0.02 * (camera.target - camera.position).norm();
+    const Vector3 corner =
+        camera.position + near * (ahead - 0.96 * half_width * right - 0.94 * half_height * up);
+    const std::string text = fmt::format("{:.3f} s{}{}", picture_.time,
+                                         options_.label.empty() ? "" : "  ", options_.label);
+    const Vector3 x = near * size * right;
+    const Vector3 y = near * size * up;
+    const Vector3 z = 1e-3 * near * size * ahead;
+    return fmt::format(
+        "text {{ internal 1 \"{}\", 1, 0 pigment {{ color rgb 0.02 }} finish {{ emission 0.02 "
+        "diffuse "
+        "0 }} no_shadow matrix <{:.9g},{:.9g},{:.9g}, {:.9g},{:.9g},{:.9g}, {:.9g},{:.9g},{:.9g}, "
+        "{:.9g},{:.9g},{:.9g}> }}\n",
+        text, x.x(), x.y(), x.z(), y.x(), y.y(), y.z(), z.x(), z.y(), z.z(), corner.x(), corner.y(),
+        corner.z());
+  }
+
+  const Footage& footage_;
+  const Footage::Picture& picture_;
+  const PictureOptions& options_;
+  std::vector<Overlapping> common_;
+  double thickness_;  ///< of wires, m
+};
+
+}  // namespace
+
+Camera parse_camera(std::string_view text) {
+  std::vector<double> numbers;
+  for (std::string_view rest = text;;) {
+    const std::size_t comma = rest.find(',');
+    const auto x = parse_number(trimmed(rest.substr(0, comma)));
+    if (!x) {
+      break;
+    }
+    numbers.push_back(*x);
+    if (comma == std::string_view::npos) {
+      break;
+    }
+    rest.remove_prefix(comma + 1);
+  }
+  const auto commas = static_cast<std::size_t>(std::count(text.begin(), text.end(), ','));
+  if (numbers.size() != commas + 1 || (numbers.size() != 6 && numbers.size() != 7)) {
+    throw InputError(
+        "", 0, "--camera",
+        fmt::format("'{}' is no camera; allowed: px,py,pz,tx,ty,tz (where it is, where "
+                    "it looks, m), and an angle in degrees after them",
+                    text));
+  }
+  Camera camera{{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}};
+  camera.angle = numbers.size() == 7 ? numbers[6] : camera.angle;
+  const Vector3 ahead = camera.target - camera.position;
+  if (!(ahead.cross(Vector3::UnitY()).norm() > 1e-9 * ahead.norm()) || !(camera.angle > 0.0) ||
+      !(camera.angle < 180.0)) {
+    throw InputError("", 0, "--camera",
+                     "looks straight up or down, nowhere, or with an angle that is not between 0 "
+                     "and 180 degrees");
+  }
+  return camera;
+}
+
+Camera camera_for(const Footage& footage, std::size_t first, std::size_t last) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Vector3 low = Vector3::Constant(infinity);
+  Vector3 high = -low;
+  for (std::size_t k = first; k <= last; ++k) {
+    for (std::size_t i = 0; i < footage.actors.size(); ++i) {
+      const double radius = bounding_radius(footage.actors[i].shape);
+      if (std::isfinite(radius)) {
+        const Vector3& p = footage.pictures[k].poses[i].position;
+        low = low.cwiseMin(p - Vector3::Constant(radius));
+        high = high.cwiseMax(p + Vector3::Constant(radius));
+      }
+    }
+  }
+  if (!(low.x() <= high.x())) {
+    low = Vector3::Constant(-1.0);  // nothing but planes
+    high = Vector3::Constant(1.0);
+  }
+  Camera camera;
+  camera.target = 0.5 * (low + high);
+  const double radius = 0.5 * (high - low).norm();
+  const double distance = 1.05 * radius / std::sin(0.5 * camera.angle * std::numbers::pi / 180.0);
+  camera.position = camera.target + distance * Vector3(0.3, 0.3, 1.0).normalized();
+  return camera;
+}
+
+std::vector<Overlapping> overlapping(const Footage& footage, std::size_t picture) {
+  const auto detector = find_detector("certified");
+  const std::vector<Pose>& poses = footage.pictures[picture].poses;
+  std::vector<Overlapping> found;
+  const auto solid = [](const Actor& actor) { return !actor.is_field && actor.entity != "hand"; };
+  for (std::size_t a = 0; a < poses.size(); ++a) {
+    for (std::size_t b = a + 1; b < poses.size(); ++b) {
+      const Actor& first = footage.actors[a];
+      const Actor& second = footage.actors[b];
+      if (!solid(first) || !solid(second) || !(first.is_free || second.is_free)) {
+        continue;
+      }
+      const double gap =
+          detector->overlap(first.collides_as, poses[a], second.collides_as, poses[b]).gap;
+      const double scale = poses[a].position.norm() + poses[b].position.norm() +
+                           smallest_extent(first.is_free ? first.shape : second.shape);
+      // Roundoff, and what is too thin to be seen.
+      if (gap < -1e-9 * scale) {
+        found.push_back({a, b, -gap});
+      }
+    }
+  }
+  return found;
+}
+
+std::string pov_scene(const Footage& footage, std::size_t picture, const PictureOptions& options) {
+  return Painter(footage, picture, options).paint();
+}
+
+}  // namespace kairos::experiments

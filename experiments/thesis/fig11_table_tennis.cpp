@@ -1,0 +1,211 @@
+#include "experiments/rally/rally_run.hpp"
+#include "experiments/run_error.hpp"
+#include "experiments/thesis/frames.hpp"
+#include "experiments/thesis/thesis_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace kairos::experiments::thesis {
+namespace {
+
+/// From where a player stands.
+const Camera player{{0.9, 1.75, 2.35}, {-0.05, 1.05, 0.15}, 42.0};
+
+Footage run(const Scene& scene, const RunChoice& choice) {
+  FootageRecorder recorder;
+  (void)simulate(Model(scene), choice, recorder);
+  return recorder.footage();
+}
+
+RunChoice thesis_choice() { return {.method = MethodChoice::thesis()}; }
+
+/// The first stroke of the rally, as both schemes see it; all that is round collides as its box, as
+/// in the thesis.
+Storyboard scene_board() {
+  const RallyRecording rally = make_rally({.seed = 1999, .strokes = 1});
+  Scene scene = rally_scene(rally, {.name = "figure 11"});
+  for (Body& body : scene.bodies) {
+    body.bounds = Bounds::obb;
+  }
+  Storyboard board;
+  board.original = run(scene, thesis_choice());
+  board.event_driven = run(scene, {});
+  const double before_hit = rally.strokes.front().hit - 0.07;
+  board.frames = {
+      {"The table, folded up so that one can play alone; the bounding boxes of the bat "
+       "and of the ball.",
+       before_hit, before_hit, "", ""}};
+  board.options = {.camera = player};
+  return board;
+}
+
+void measure_scene(FigureData& data) {
+  const Storyboard board = scene_board();
+  tell_frames(board, data);
+  data.count("bodies", static_cast<std::int64_t>(board.original.actors.size()), "in the scene");
+}
+
+std::string draw_scene(const std::string& folder) { return draw_frames(scene_board(), folder); }
+
+/// How deep the ball is in the bat in a picture, m.
+double depth_at(const Footage& footage, std::size_t picture) {
+  double depth = 0.0;
+  for (const Overlapping& pair : overlapping(footage, picture)) {
+    if (footage.actors[pair.a].entity == "bat" || footage.actors[pair.b].entity == "bat") {
+      depth = std::max(depth, pair.depth);
+    }
+  }
+  return depth;
+}
+
+std::string depth_note(const Footage& footage, std::size_t picture) {
+  const double depth = depth_at(footage, picture);
+  return depth > 0.0 ? fmt::format("{:.1f} mm inside", 1000.0 * depth) : "outside";
+}
+
+/// On which side of the bat's middle the ball is.
+bool before_bat(const Footage& footage, std::size_t picture) {
+  const auto find = [&](std::string_view name) {
+    std::size_t i = 0;
+    while (footage.actors[i].name != name) {
+      ++i;
+    }
+    return footage.pictures[picture].poses[i];
+  };
+  return find("bat").to_body(find("ball").position).z() < 0.0;
+}
+
+/// Whether the ball is outside before picture k, inside in it, and deeper in the next, always on
+/// the side that it came from.
+bool sinks(const Footage& footage, std::size_t k) {
+  return depth_at(footage, k - 1) == 0.0 && depth_at(footage, k) > 0.0 &&
+         depth_at(footage, k + 1) > depth_at(footage, k) &&
+         before_bat(footage, k - 1) == before_bat(footage, k) &&
+         before_bat(footage, k) == before_bat(footage, k + 1);
+}
+
+/// The picture in which the hit is found of the first stroke that shows the ball sinking into the
+/// bat; 0 if there is none.
+std::size_t sinking_picture(const Footage& footage) {
+  for (std::size_t k = 1; k + 1 < footage.pictures.size(); ++k) {
+    if (sinks(footage, k)) {
+      return k;
+    }
+  }
+  return 0;
+}
+
+/// Three frames running, and how deep the ball is in the bat.
+struct Penetration {
+  Storyboard board;
+  std::vector<double> depths;  ///< of `original`, m
+  std::uint64_t seed = 0;      ///< of the rally
+};
+
+/// A rally with a bat as heavy as the ball, by both schemes.
+void play_equal_masses(Penetration& found) {
+  RallyMethod method{.name = "figure 12"};
+  method.bat_mass = 0.0027;
+  const Scene scene = rally_scene(make_rally({.seed = found.seed}), method);
+  found.board.original = run(scene, thesis_choice());
+  found.board.event_driven = run(scene, {});
+}
+
+/// Of the first seed and stroke that show it: the frame before, the one in which the hit is found,
+/// and the next.
+Penetration penetration() {
+  constexpr std::uint64_t first_seed = 1999;
+  constexpr std::uint64_t most_seeds = 200;
+  Penetration found;
+  Storyboard& board = found.board;
+  std::size_t k = 0;
+  for (found.seed = first_seed; k == 0; ++found.seed) {
+    if (found.seed == first_seed + most_seeds) {
+      throw RunError("no rally shows the ball sinking into the bat");
+    }
+    play_equal_masses(found);
+    k = sinking_picture(board.original);
+  }
+  --found.seed;
+  const char* captions[] = {"The ball and the bat are headed for a collision.",
+                            "The collision is detected, and the ball's velocity changed.",
+                            "The ball has moved, but the bat has moved farther."};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t picture = k - 1 + i;
+    const double t = board.original.pictures[picture].time;
+    board.frames.push_back({captions[i], t, t, depth_note(board.original, picture),
+                            depth_note(board.event_driven, board.event_driven.at(t))});
+    found.depths.push_back(depth_at(board.original, picture));
+  }
+  const Vector3 ball = board.original.pictures[k].poses.back().position;
+  board.options = {.camera = Camera{ball + Vector3(0.75, 0.16, 0.1), ball, 34.0}};
+  return found;
+}
+
+void measure_penetration(FigureData& data) {
+  const Penetration found = penetration();
+  tell_frames(found.board, data);
+  Table& table = data.table(
+      "depths", {{"frame", "", "number"}, {"depth", "m", "of the ball in the bat, original"}});
+  for (std::size_t i = 0; i < found.depths.size(); ++i) {
+    table.rows.push_back({static_cast<std::int64_t>(i + 1), number_cell(found.depths[i])});
+  }
+  data.count("seed", static_cast<std::int64_t>(found.seed), "of the rally");
+  data.value("detected", 1000.0 * found.depths[1], "mm", "depth when the hit is found", 3);
+  data.value("after", 1000.0 * found.depths[2], "mm", "depth a frame later", 3);
+}
+
+std::string draw_penetration(const std::string& folder) {
+  return draw_frames(penetration().board, folder);
+}
+
+}  // namespace
+
+ThesisFigure table_tennis_scene() {
+  return {.name = "fig11",
+          .chapter = "7",
+          .title = "Figure 11: the table tennis application",
+          .shows =
+              "The table, folded to allow a single user to play, with the bounding boxes of "
+              "the bat and the ball.",
+          .how =
+              "The scene table-tennis with all round things in their boxes (bounds = \"obb\"), "
+              "rendered from a run of kairos record --seed 1999 just before the first hit.",
+          .caption =
+              "The {bodies} bodies of the scene table-tennis: left by the original scheme, "
+              "right event-driven; boxes as wire.",
+          .finding = "The hand is in this picture; in the thesis' it is not. Sizes are ours.",
+          .script = "thesis.frames",
+          .measure = measure_scene,
+          .draw = draw_scene};
+}
+
+ThesisFigure bat_and_ball() {
+  return {.name = "fig12",
+          .chapter = "7",
+          .title = "Figure 12: the ball penetrates the bat",
+          .shows =
+              "Three frames: bat and ball headed for a collision; the collision detected and "
+              "the ball's direction reversed; the bat has moved too far and the ball is "
+              "inside it.",
+          .how =
+              "Three frames running of the first stroke of the rally of seed 1999 that shows "
+              "the ball inside the bat twice. The bat is as heavy as the ball here, so that "
+              "the exchange of 13.7 gives the ball the bat's own velocity; left the original "
+              "scheme, right event-driven at the same times. What bat and ball have in common "
+              "glows; the depth is printed.",
+          .caption =
+              "Left, original: {detected} deep where the hit is found, {after} a frame "
+              "later. Right, event-driven: never inside.",
+          .finding =
+              "The drawn frame already shows the ball inside when the collision is found, "
+              "and a bat that still speeds up catches the ball that was given its "
+              "velocity: {after} a frame later.",
+          .script = "thesis.frames",
+          .measure = measure_penetration,
+          .draw = draw_penetration};
+}
+
+}  // namespace kairos::experiments::thesis
