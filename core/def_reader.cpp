@@ -118,7 +118,7 @@ class DefReader {
     int expected = 1;
     for (const auto& [number, entries] : objects_) {
       if (number != expected++) {
-        fail(entries.begin()->second.line, fmt::format("Object{}", number),
+        fail(first_line(entries), fmt::format("Object{}", number),
              fmt::format("there is no Object{}; allowed: numbers from 1 without a gap",
                          expected - 1));
       }
@@ -131,12 +131,21 @@ class DefReader {
     return {std::move(root), file_, 0};
   }
 
+  /// Where an object is first spoken of.
+  static int first_line(const Entries& entries) {
+    int line = entries.begin()->second.line;
+    for (const auto& [key, entry] : entries) {
+      line = std::min(line, entry.line);
+    }
+    return line;
+  }
+
   Value body(int number, const Entries& entries) {
     const std::string prefix = fmt::format("Object{}-", number);
     const auto need = [&](std::string_view key) -> const Entry& {
       const auto found = entries.find(key);
       if (found == entries.end()) {
-        fail(entries.begin()->second.line, prefix + std::string(key), "is missing");
+        fail(first_line(entries), prefix + std::string(key), "is missing");
       }
       return found->second;
     };
@@ -150,7 +159,9 @@ class DefReader {
     Table table;
     table.set("entity", text(entity, type.line));
     const Entry& name = need("Name");
-    table.set("name", text(label(entries, name), name.line));
+    const auto given = entries.find("Label");
+    table.set("name",
+              text(label(entries, name), given != entries.end() ? given->second.line : name.line));
     set_shape(prefix, name, need("Pos"), entries, entity, table);
     set_others(prefix, entries, entity, table);
     return {std::move(table), file_, name.line};

@@ -42,6 +42,7 @@ void run_povray(const fs::path& scene, const fs::path& png, int width, int heigh
                                    fmt::format("+H{}", height),
                                    "+FN",
                                    "-D",
+                                   "-J",
                                    "-P"};
   command.push_back(smooth ? "+A0.3" : "-A");
   std::error_code error;

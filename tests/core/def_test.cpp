@@ -186,7 +186,7 @@ TEST_CASE("def: what is wrong is named by file and line", "[def][input]") {
        "has 4 numbers"},
       {"Object1-Name:object_files/cube\nObject1-Type:O_wall\nObject1-Pos:0 up 0", 3, "\"up\""},
       {"Object1-Name:object_files/cube\nObject1-Type:O_wall\nObject1-Pos:0 nan 0", 3, "\"nan\""},
-      {"Object1-Name:object_files/cube\nObject1-Type:O_wall\nObject1-Pos:0 1e13 0", 3, "1e+13"},
+      {"Object1-Name:object_files/cube\nObject1-Type:O_wall\nObject1-Pos:0 1e13 0", 3, "1e+12"},
       {pad_lines + "Object1-Scale:0", 6, "is 0"},
       {pad_lines + "Object1-Scale:1 2", 6, "has 2 numbers"},
       {pad_lines + "Object1-Scale:1 -2 1", 6, "is -2"},

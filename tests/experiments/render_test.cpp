@@ -7,6 +7,7 @@
 #include "tests/experiments/program.hpp"
 #include "tests/experiments/scenes.hpp"
 
+#include <filesystem>
 #include <string>
 
 using namespace kairos;
@@ -27,6 +28,12 @@ Footage still() {
                     {"red ball", "ball", Sphere{0.5}, Box{{0.5, 0.5, 0.5}}, true, false}};
   footage.pictures = {{0.25, {Pose{}, Pose{{5, 0, 0}}, Pose{{0, 0.4, 0}}}}};
   return footage;
+}
+
+void write(const TemporaryFolder& folder, const std::string& below, const std::string& name,
+           const std::string& text) {
+  std::filesystem::create_directories(folder.path(below));
+  (void)folder.file(below + "/" + name, text);
 }
 
 std::size_t count(const std::string& text, const std::string& part) {
@@ -77,18 +84,18 @@ TEST_CASE("footage: what is missing or broken is named", "[render][input]") {
     FAIL("was not refused");
   };
   refused(folder.path("nowhere"), "is not there");
-  (void)folder.file("alone/trajectory.csv", trajectory);
+  write(folder, "alone", "trajectory.csv", trajectory);
   refused(folder.path("alone"), "summary.json");
-  (void)folder.file("other/trajectory.csv", "a,b\n1,2\n");
-  (void)folder.file("other/summary.json", summary);
+  write(folder, "other", "trajectory.csv", "a,b\n1,2\n");
+  write(folder, "other", "summary.json", summary);
   refused(folder.path("other"), "trajectory.csv:1: body");
-  (void)folder.file("none/trajectory.csv", trajectory);
-  (void)folder.file("none/summary.json", "{}\n");
+  write(folder, "none", "trajectory.csv", trajectory);
+  write(folder, "none", "summary.json", "{}\n");
   refused(folder.path("none"), "bodies");
   std::string wrong = trajectory;
   wrong.replace(wrong.find("ball"), 4, "bull");
-  (void)folder.file("wrong/trajectory.csv", wrong);
-  (void)folder.file("wrong/summary.json", summary);
+  write(folder, "wrong", "trajectory.csv", wrong);
+  write(folder, "wrong", "summary.json", summary);
   refused(folder.path("wrong"), "\"bull\" is not in summary.json");
 }
 
