@@ -96,7 +96,7 @@ Told tell_session() {
   told.board.original = std::move(original.footage);
   told.board.event_driven = std::move(exact.footage);
   told.board.options = {
-      .camera = Camera{{0.35, 1.7, 2.6}, {0.0, 1.1, 0.1}, 36.0}, .width = 400, .height = 300};
+      .camera = Camera{{0.35, 1.7, 2.6}, {0.0, 1.02, 0.1}, 41.0}, .width = 400, .height = 300};
   return told;
 }
 

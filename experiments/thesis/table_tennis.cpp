@@ -90,8 +90,9 @@ void tell_methods(const std::vector<RallyMethod>& methods, const std::vector<Sum
                   FigureData& data) {
   Table& table = data.table(
       "methods", {{"method", "", "scheme and its options"},
+                  {"bat", "kg", "mass of the bat"},
                   {"nudge", "s", "factor of the nudge"},
-                  {"reading", "", "of the nudge: 13.9 or prose of 7.4"},
+                  {"reading", "", "of the nudge: along v' - v (change) or v' (prose)"},
                   {"rallies", "", "played"},
                   {"strokes", "", "in all"},
                   {"stopped", "", "rallies that ended before their time"},
