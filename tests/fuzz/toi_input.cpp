@@ -34,8 +34,9 @@ void answer(const ToiQuery& query) {
   const TimeOfImpact toi =
       detector->time_of_impact({query.shape_a, query.motion_a}, {query.shape_b, query.motion_b},
                                {Instant{}, query.duration}, 0.0);
-  require(std::isfinite(toi.t_lo) && toi.t_lo >= 0.0, "t_lo is a time of the window");
-  require(toi.t_hi >= toi.t_lo && toi.t_hi <= query.duration, "t_hi is after t_lo, in the window");
+  require(std::isfinite(toi.t_lo) && toi.t_lo >= 0.0, "t_lo is no time of the window");
+  require(toi.t_hi >= toi.t_lo && toi.t_hi <= query.duration,
+          "t_hi is before t_lo or beyond the window");
   require(toi.gap >= 0.0, "the gap is no distance");
 }
 

@@ -1,6 +1,5 @@
 // The query itself: two shapes and two motions from any bytes, judged by the long double reference
 // against everything that `certified` promises.
-#include "ccd/bisection.hpp"
 #include "ccd/certified.hpp"
 #include "experiments/accuracy/query.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
@@ -146,7 +145,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
               again.evaluations == toi.evaluations,
           "the same query twice, other bits");
   const TimeOfImpact other = q.exchanged().ask(*certified);
-  require(broken_promise(q.exchanged(), other).empty(), "exchanged: " + broken_promise(q, other));
+  require(broken_promise(q.exchanged(), other).empty(),
+          "exchanged: " + broken_promise(q.exchanged(), other));
   require(toi.status == ToiStatus::separated ||
               certified->swept_overlap(q.moving_a(), q.moving_b(), q.window()),
           "the swept boxes exclude a contact that is there");
