@@ -98,8 +98,7 @@ class Advancement {
     }
     const bool plane = kind_ == PairKind::box_plane || kind_ == PairKind::sphere_plane;
     if (step < horizon && witness_.frame != WitnessFrame::world && !plane) {
-      Witness still = witness_;
-      still.frame = WitnessFrame::world;
+      const Witness still = unit_in_world(motion_, k_, witness_);
       step = std::max(step, SeparationFunction(motion_, k_, turn_, still).advance(horizon));
     }
     return step;

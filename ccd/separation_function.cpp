@@ -384,6 +384,19 @@ Witness between_balls(PairKind kind, const PairMotion& motion, const Kinematics&
   return witness;
 }
 
+Witness unit_in_world(const PairMotion& motion, const Kinematics& k, const Witness& witness) {
+  Witness still = witness;
+  still.frame = WitnessFrame::world;
+  if (witness.frame == WitnessFrame::edges) {
+    still.n = witness.n / witness.length;
+    still.length = 1.0;
+    still.gap = still.n.dot(k.d) - motion.reach() -
+                motion.half_a().dot((k.R_WA.transpose() * still.n).cwiseAbs()) -
+                motion.half_b().dot((k.R_WB.transpose() * still.n).cwiseAbs());
+  }
+  return still;
+}
+
 double clear_of_balls(PairKind kind, const PairMotion& motion) {
   if (!motion.parabolic() || kind == PairKind::sphere_plane || kind == PairKind::box_plane) {
     return 0.0;

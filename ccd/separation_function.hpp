@@ -97,6 +97,10 @@ class SeparationFunction {
 [[nodiscard]] PairKind pair_kind(const Shape& a, const Shape& b);
 /// The witness of the balls around the shapes (`gap` is negative infinity if there is none).
 [[nodiscard]] Witness between_balls(PairKind kind, const PairMotion& motion, const Kinematics& k);
+/// The same direction, of length 1 and fixed in the world, and the gap along it evaluated afresh:
+/// of nearly parallel edges its rounding is not divided by their sine.
+[[nodiscard]] Witness unit_in_world(const PairMotion& motion, const Kinematics& k,
+                                    const Witness& witness);
 /// A time up to which the balls around two bodies on parabolas are proven apart, whatever turns; 0
 /// if they are not apart now, or if there are none. Costs no rotation.
 [[nodiscard]] double clear_of_balls(PairKind kind, const PairMotion& motion);
