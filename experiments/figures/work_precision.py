@@ -44,8 +44,7 @@ def work(data, figures, name, label, cost, problems, caption):
         for i, method in enumerate(every):
             rows = [row for row in tables[sweep] if row["method"] == method]
             if rows:
-                draw_method(panel, rows, cost, style.look(method, every) | {
-                    "linestyle": style.DASHES[i // len(style.COLOURS)], "linewidth": 1.1})
+                draw_method(panel, rows, cost, look(method, i))
         panel.set_xscale("log")
         panel.set_yscale("log")
         panel.set_ylim(FLOOR / 2, 1.0)
@@ -58,7 +57,15 @@ def work(data, figures, name, label, cost, problems, caption):
     figures.save(figure, name, caption)
 
 
-def draw_method(panel, rows, cost, look):
+def look(method, i):
+    """More methods than colours: the dashes tell the rounds apart."""
+    return {"color": style.COLOURS[i % len(style.COLOURS)],
+            "marker": style.MARKERS[i % len(style.MARKERS)],
+            "linestyle": style.DASHES[i // len(style.COLOURS)], "markerfacecolor": "white",
+            "markeredgewidth": 1.1, "linewidth": 1.1, "label": method}
+
+
+def draw_method(panel, rows, cost, drawn):
     good, bad = [], []
     for row in rows:
         e, c = error(row), cost(row)
@@ -68,8 +75,8 @@ def draw_method(panel, rows, cost, look):
             bad.append(c)
         else:
             good.append((c, max(e, FLOOR)))
-    panel.plot([p[0] for p in good], [p[1] for p in good], **look)
+    panel.plot([p[0] for p in good], [p[1] for p in good], **drawn)
     if not bad:
         return
-    panel.plot(bad, [0.7] * len(bad), linestyle="none", marker="x", color=look["color"],
+    panel.plot(bad, [0.7] * len(bad), linestyle="none", marker="x", color=drawn["color"],
                markersize=5, clip_on=False)
