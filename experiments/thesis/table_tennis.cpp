@@ -246,10 +246,10 @@ ThesisFigure table_tennis() {
           "Intervals hold 95 %: Wilson's for shares of strokes, 1.96 standard errors over "
           "rallies for frames.",
       .caption =
-          "Left: strokes that pass through the ball, and frames per stroke that show the "
-          "ball inside the bat, with 95 % intervals. Middle: what the nudge does to both, "
-          "and how many hits make the ball jump by more than its diameter. Right: the "
-          "bat's speed as 13.8 tells it, against the true one; quartiles.",
+          "Above: strokes that pass through the ball, and frames per stroke that show the "
+          "ball inside the bat, with 95 % intervals. Below left: what the nudge does, and how "
+          "many hits make the ball jump by more than its diameter. Below right: the bat's "
+          "speed as 13.8 tells it, against the true one; quartiles.",
       .finding =
           "Looked at once a frame, {passed} of strokes pass through the ball, with {frames} "
           "penetrating frames per stroke; from impact to impact {passed_events} of {strokes} do "

@@ -62,8 +62,7 @@ def draw_nudge(panel, rows):
     panel.text(2.9, 0.05, "0.0025", fontsize=8.5)
     handles = [axis.get_legend_handles_labels() for axis in (panel, jumps)]
     panel.legend(handles[0][0] + handles[1][0], handles[0][1] + handles[1][1],
-                 loc="upper center", fontsize=7.5)
-    panel.set_ylim(top=1.45 * panel.get_ylim()[1])
+                 loc="center right", fontsize=7.5)
 
 
 def draw_speeds(panel, rows):
