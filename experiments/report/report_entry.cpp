@@ -89,9 +89,10 @@ std::vector<ReportEntry> read_report_entries(const std::string& folder) {
   for (const auto& below : fs::directory_iterator(folder, error)) {
     if (fs::exists(below.path() / "manifest.csv", error)) {
       const std::string name = below.path().filename().string();
+      const ThesisFigure* figure = find_thesis_figure(name);
+      const bool of_thesis = figure != nullptr && (!figure->chapter.empty() || name == "errata");
       entries.push_back({below.path().string(), name, read_pairs(below.path() / "manifest.csv"),
-                         read_pairs(below.path() / "figures.csv"),
-                         find_thesis_figure(name) != nullptr});
+                         read_pairs(below.path() / "figures.csv"), of_thesis});
     }
   }
   const std::vector<std::string> order = known_names();

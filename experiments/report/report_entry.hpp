@@ -12,7 +12,7 @@ struct ReportEntry {
   std::string name;    ///< of the folder: prefix of links
   std::vector<std::pair<std::string, std::string>> manifest;
   std::vector<std::pair<std::string, std::string>> figures;  ///< name, caption
-  bool of_thesis = false;
+  bool of_thesis = false;  ///< it belongs to a chapter of the thesis, or is its errata
 
   /// A line of the manifest; empty if there is none.
   [[nodiscard]] std::string entry(const std::string& key) const;

@@ -12,6 +12,7 @@ namespace thesis {
 ThesisFigure two_spheres();
 ThesisFigure aabbs_overlapping();
 ThesisFigure aabbs_on_one_axis();
+ThesisFigure oriented_box();
 ThesisFigure ball_in_box();
 ThesisFigure separating_axis();
 ThesisFigure flow_of_events();
@@ -37,6 +38,7 @@ std::span<const ThesisFigure> thesis_figures() {
       thesis::two_spheres(),
       thesis::aabbs_overlapping(),
       thesis::aabbs_on_one_axis(),
+      thesis::oriented_box(),
       thesis::ball_in_box(),
       thesis::separating_axis(),
       thesis::flow_of_events(),

@@ -244,3 +244,18 @@ TEST_CASE("names of shipped scenes and experiments mean the same in every folder
   CHECK(find_scene("./bounce") == "./bounce");
   std::filesystem::current_path(before);
 }
+
+TEST_CASE("figure 4: a box fitted to a mesh that is not aligned is larger", "[figures]") {
+  const Table axes = table_of("fig04", "axes");
+  REQUIRE(axes.rows.size() == 3);
+  CHECK(number(axes, 0, "radius") > number(axes, 1, "radius"));
+  const Table corners = table_of("fig04", "corners");
+  const double long_side = std::hypot(number(corners, 1, "x") - number(corners, 0, "x"),
+                                      number(corners, 1, "y") - number(corners, 0, "y"));
+  CHECK(std::abs(long_side - 2.0 * number(axes, 0, "radius")) <= 1e-14);  // roundoff of metres
+  const Table tilts = table_of("fig04", "tilts");
+  REQUIRE(tilts.rows.size() == 31);
+  CHECK(number(tilts, 0, "volume") == 1.0);
+  CHECK(number(tilts, 15, "angle") == 45.0);
+  CHECK(number(tilts, 15, "volume") > 1.15);
+}
