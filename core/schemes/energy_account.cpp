@@ -26,9 +26,11 @@ double kinetic_gain(double m, const Vector3& v0, const Vector3& v1) {
   return 0.5 * m * (v1 - v0).dot(v1 + v0);
 }
 
-double spin_energy(const BodyInertia& inertia, const BodyState& s) {
-  const Vector3 w_B = s.pose.orientation.conjugate() * s.twist.angular;
-  return 0.5 * w_B.dot(inertia.principal.cwiseProduct(w_B));
+/// The same for rotation, by principal axes: a body that tumbles moves energy from one to another.
+Vector3 spin_gains(const BodyInertia& inertia, const BodyState& from, const BodyState& to) {
+  const Vector3 w0 = from.pose.orientation.conjugate() * from.twist.angular;
+  const Vector3 w1 = to.pose.orientation.conjugate() * to.twist.angular;
+  return 0.5 * inertia.principal.cwiseProduct((w1 - w0).cwiseProduct(w1 + w0));
 }
 
 void gather(const Island& island, std::span<const BodyState> bodies, std::vector<BodyState>& out) {
@@ -84,7 +86,9 @@ double EnergyAccount::surplus(const Leg& leg) {
     }
     double gain = kinetic_gain(inertia.mass, from.twist.linear, to.twist.linear);
     if (inertia.rotates) {
-      gain += spin_energy(inertia, to) - spin_energy(inertia, from);
+      const Vector3 gains = spin_gains(inertia, from, to);
+      ledger_.exchange(gains.cwiseAbs().sum());
+      gain += gains.sum();
     }
     surplus += gain - falls - other;
   }

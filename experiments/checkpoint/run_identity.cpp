@@ -46,6 +46,22 @@ std::string frames_text(const FrameTimes& frames) {
 
 }  // namespace
 
+RunIdentity method_identity(const RunChoice& choice) {
+  return {{"scheme", choice.method.scheme},
+          {"integrator", choice.method.integrator},
+          {"detector", choice.method.detector},
+          {"impact", choice.method.impact},
+          {"frame", choice.frames ? frames_text(*choice.frames) : "the scene's"},
+          {"step", fmt::format("{}", choice.step.value_or(0.0))},
+          {"threshold", fmt::format("{}", choice.threshold)},
+          {"equal-substeps", fmt::format("{}", choice.equal_substeps)},
+          {"max-substeps", fmt::format("{}", choice.max_substeps)},
+          {"tolerance", fmt::format("{}", choice.toi_tolerance)},
+          {"relative-tolerance", fmt::format("{}", choice.stepper.relative_tolerance)},
+          {"absolute-tolerance", fmt::format("{}", choice.stepper.absolute_tolerance)},
+          {"roundoff", fmt::format("{}", choice.roundoff)}};
+}
+
 RunIdentity run_identity(const Model& model, const std::vector<Override>& overrides,
                          const RunChoice& choice) {
   RunIdentity identity;
@@ -64,19 +80,11 @@ RunIdentity run_identity(const Model& model, const std::vector<Override>& overri
       add("drive of " + body.name, drive_fingerprint(*body.drive, scene.duration));
     }
   }
-  add("scheme", choice.method.scheme);
-  add("integrator", choice.method.integrator);
-  add("detector", choice.method.detector);
-  add("impact", choice.method.impact);
-  add("frame", frames_text(choice.frames.value_or(scene.frames)));
-  add("step", fmt::format("{}", choice.step.value_or(0.0)));
-  add("threshold", fmt::format("{}", choice.threshold));
-  add("equal-substeps", fmt::format("{}", choice.equal_substeps));
-  add("max-substeps", fmt::format("{}", choice.max_substeps));
-  add("tolerance", fmt::format("{}", choice.toi_tolerance));
-  add("relative-tolerance", fmt::format("{}", choice.stepper.relative_tolerance));
-  add("absolute-tolerance", fmt::format("{}", choice.stepper.absolute_tolerance));
-  add("roundoff", fmt::format("{}", choice.roundoff));
+  RunChoice resolved = choice;
+  resolved.frames = choice.frames.value_or(scene.frames);
+  for (auto& [key, value] : method_identity(resolved)) {
+    add(key, value);
+  }
   for (const auto& [name, version] : versions()) {
     add("version of " + name, version);
   }

@@ -8,6 +8,8 @@ namespace kairos::experiments {
 
 /// All that the bytes of a run depend on, but its duration: scene (by what it says, not by where
 /// its file lies), what was set, method, versions.
+/// What of that is the method's, without what the scene says.
+[[nodiscard]] RunIdentity method_identity(const RunChoice& choice);
 [[nodiscard]] RunIdentity run_identity(const Model& model, const std::vector<Override>& overrides,
                                        const RunChoice& choice);
 

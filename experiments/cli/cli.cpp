@@ -52,6 +52,9 @@ void add_commands(CLI::App& app) {
   add_record_command(app);
   add_physworld_command(app);
   add_bench_command(app);
+  add_tradeoff_command(app);
+  add_recommend_command(app);
+  add_random_scenes_command(app);
 }
 
 /// CLI11 only says that a command is missing where a person has mistyped one.

@@ -10,8 +10,10 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 
 namespace kairos::experiments {
 namespace {
@@ -88,11 +90,19 @@ ExperimentOutcome run_experiment(const ExperimentSpec& spec, const ExperimentOpt
                                  const std::string& folder) {
   ExperimentOutcome outcome;
   const auto start = Clock::now();
+  if (!spec.program.empty()) {
+    const ProgramOutput made = find_program(spec.program)->run(spec, options.size, options.threads);
+    outcome = publish_program(spec, options, made, folder);
+    outcome.run_seconds = seconds_since(start) - outcome.figure_seconds;
+    return outcome;
+  }
   OutputFolder out(folder);
+  std::vector<std::string> journals;
   Table columns{{"sweep", "column", "role", "unit", "label", "scale"}, {}};
   Table timings{{"sweep", "run", "method", "seconds"}, {}};
   for (const SweepSpec& sweep : spec.sweeps) {
-    const SweepResult result = run_sweep(sweep, options.threads);
+    journals.push_back((std::filesystem::path(folder) / ("." + sweep.name + ".rows")).string());
+    const SweepResult result = run_sweep(sweep, options.threads, journals.back());
     out.file(sweep.name + "_runs.csv").write(result.runs.csv());
     out.file(sweep.name + "_summary.csv").write(result.summary.csv());
     if (sweep.series) {
@@ -111,8 +121,39 @@ ExperimentOutcome run_experiment(const ExperimentSpec& spec, const ExperimentOpt
   out.file("spec.toml").write(file_text(spec.path));
   out.file("timings.csv").write(timings.csv());
   out.publish();
+  for (const std::string& journal : journals) {
+    std::error_code ignored;  // its rows are in the tables
+    std::filesystem::remove(journal, ignored);
+  }
   outcome.run_seconds = seconds_since(start);
 
+  const auto drawing = Clock::now();
+  outcome.figure_problem = draw_figures(spec.figure, folder);
+  outcome.figure_seconds = seconds_since(drawing);
+  return outcome;
+}
+
+ExperimentOutcome publish_program(const ExperimentSpec& spec, const ExperimentOptions& options,
+                                  const ProgramOutput& made, const std::string& folder) {
+  OutputFolder out(folder);
+  Table manifest = manifest_of(spec, options);
+  for (const std::string& name : made.shown) {
+    manifest.rows.push_back({std::string("table"), name});
+  }
+  for (const auto& [name, table] : made.tables) {
+    out.file(name + ".csv").write(table.csv());
+  }
+  out.file("columns.csv")
+      .write(Table{{"sweep", "column", "role", "unit", "label", "scale"}, {}}.csv());
+  out.file("manifest.csv").write(manifest.csv());
+  out.file("spec.toml").write(file_text(spec.path));
+  if (!made.timings.columns.empty()) {
+    out.file("timings.csv").write(made.timings.csv());
+  }
+  out.publish();
+  ExperimentOutcome outcome;
+  outcome.runs = made.runs;
+  outcome.failed = made.failed;
   const auto drawing = Clock::now();
   outcome.figure_problem = draw_figures(spec.figure, folder);
   outcome.figure_seconds = seconds_since(drawing);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "experiments/programs/experiment_program.hpp"
 #include "experiments/sweeps/sweep_spec.hpp"
 
 #include <cstddef>
@@ -31,5 +32,10 @@ struct ExperimentOutcome {
 /// `NAME.svg`, `NAME.png` and `figures.csv`. Throws `InputError` and `RunError`.
 ExperimentOutcome run_experiment(const ExperimentSpec& spec, const ExperimentOptions& options,
                                  const std::string& folder);
+
+/// The same for what a program made: its tables, `manifest.csv`, `columns.csv`, `spec.toml`,
+/// `timings.csv`, then the figures.
+ExperimentOutcome publish_program(const ExperimentSpec& spec, const ExperimentOptions& options,
+                                  const ProgramOutput& made, const std::string& folder);
 
 }  // namespace kairos::experiments

@@ -6,6 +6,7 @@
 #include "experiments/output/broadcast.hpp"
 #include "experiments/parallel_for.hpp"
 #include "experiments/progress_bar.hpp"
+#include "experiments/sweeps/sweep_journal.hpp"
 #include "experiments/sweeps/sweep_plan.hpp"
 #include "experiments/sweeps/sweep_table.hpp"
 
@@ -76,19 +77,33 @@ void check_readable(const SweepSpec& spec, const std::string& scene,
 
 }  // namespace
 
-SweepResult run_sweep(const SweepSpec& spec, std::size_t threads) {
+SweepResult run_sweep(const SweepSpec& spec, std::size_t threads, const std::string& journal) {
   using Clock = std::chrono::steady_clock;
   const std::vector<PlannedRun> plan = plan_sweep(spec);
   const std::string scene = scene_path(spec);
   check_readable(spec, scene, plan);
 
   std::vector<RunRecord> records(plan.size());
+  std::vector<char> finished(plan.size(), 0);
+  std::optional<SweepJournal> kept;
+  if (!journal.empty()) {
+    kept.emplace(journal, sweep_key(spec, plan, scene));
+    for (auto& [index, record] : kept->found()) {
+      records[index] = std::move(record);
+      finished[index] = 1;
+    }
+  }
   {
     ProgressBar bar(spec.name, plan.size());
     parallel_for(plan.size(), threads, [&](std::size_t i) {
-      const auto start = Clock::now();
-      records[i] = run_one(spec, scene, plan[i]);
-      records[i].seconds = std::chrono::duration<double>(Clock::now() - start).count();
+      if (finished[i] == 0) {
+        const auto start = Clock::now();
+        records[i] = run_one(spec, scene, plan[i]);
+        records[i].seconds = std::chrono::duration<double>(Clock::now() - start).count();
+        if (kept) {
+          kept->add(i, records[i]);
+        }
+      }
       bar.advance();
     });
   }

@@ -4,6 +4,7 @@
 #include "experiments/sweeps/table.hpp"
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 namespace kairos::experiments {
@@ -22,8 +23,10 @@ struct SweepResult {
 /// Runs all combinations. A run that is refused, stops before its end or fails is a row with its
 /// `status` (completed, stopped, refused, failed) and `reason`. Throws `InputError` where the spec
 /// itself is wrong: a scene that cannot be read, a method that does not exist, an override that no
-/// run accepts. `threads` 0: one per core.
-[[nodiscard]] SweepResult run_sweep(const SweepSpec& spec, std::size_t threads);
+/// run accepts. `threads` 0: one per core. `journal`: a file that keeps finished rows, from which
+/// a sweep that was killed goes on; whoever has written the tables removes it. Empty: none.
+[[nodiscard]] SweepResult run_sweep(const SweepSpec& spec, std::size_t threads,
+                                    const std::string& journal = "");
 
 /// Quantile of sorted values by linear interpolation [Hyndman1996, type 7]; needs one value.
 [[nodiscard]] double quantile(const std::vector<double>& sorted, double p);

@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "experiments/metrics/metrics.hpp"
+#include "experiments/programs/experiment_program.hpp"
 #include "experiments/sweeps/sweep_method.hpp"
 
 #include <fmt/format.h>
@@ -478,7 +479,8 @@ void check_sweep(const Section& section, SweepSpec& sweep) {
 ExperimentSpec read_root(const toml::table& root, const std::string& path, Size size) {
   const Section section(root, "", path, size);
   Keys keys = sweep_keys();
-  keys.insert(keys.end(), {"name", "title", "asks", "how", "finding", "figure", "sweep"});
+  keys.insert(keys.end(),
+              {"name", "title", "asks", "how", "finding", "figure", "sweep", "program", "scenes"});
   section.allow(keys);
   ExperimentSpec experiment;
   experiment.path = path;
@@ -488,6 +490,16 @@ ExperimentSpec read_root(const toml::table& root, const std::string& path, Size 
   experiment.how = section.text("how");
   experiment.finding = section.text("finding");
   experiment.figure = section.text("figure");
+  experiment.program = section.text("program");
+  if (section.find("scenes") != nullptr) {
+    experiment.scenes = section.texts("scenes");
+  }
+  if (!experiment.program.empty()) {
+    if (find_program(experiment.program) == nullptr) {
+      section.fail(1, "program", fmt::format("'{}' is unknown", experiment.program));
+    }
+    return experiment;
+  }
   SweepSpec shared;
   shared.file = path;
   shared.name = experiment.name;

@@ -101,6 +101,8 @@ struct ExperimentSpec {
   std::string how;      ///< the method of the experiment
   std::string finding;  ///< what to look at
   std::string figure;   ///< script in `experiments/figures`; empty: the generic one
+  std::string program;  ///< what is run instead of sweeps (`find_program`); empty: the sweeps
+  std::vector<std::string> scenes;  ///< of a program
   std::vector<SweepSpec> sweeps;
 };
 

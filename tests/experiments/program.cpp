@@ -7,12 +7,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
+#include <thread>
 
 namespace kairos::tests {
 namespace {
@@ -57,6 +59,10 @@ Outcome kairos_program(const std::vector<std::string>& arguments,
   const ::pid_t child = ::fork();
   if (child == 0) {
     become(arguments, surroundings, in, out, err);
+  }
+  if (child > 0 && surroundings.kill_after > 0.0) {
+    std::this_thread::sleep_for(std::chrono::duration<double>(surroundings.kill_after));
+    ::kill(child, SIGKILL);
   }
   int status = 0;
   if (child < 0 || ::waitpid(child, &status, 0) != child) {

@@ -18,6 +18,7 @@ struct Surroundings {
   std::string input = {};            ///< on stdin
   std::string output = {};           ///< file that takes stdout; empty: caught in `Outcome::out`
   std::size_t largest_file = 0;      ///< bytes; 0: no limit. Stands for a disk that fills
+  double kill_after = 0.0;           ///< s; then SIGKILL; 0: never
   unsigned processor_seconds = 100;  ///< then it is killed: a run that hangs fails its test
 };
 

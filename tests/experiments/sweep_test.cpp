@@ -4,13 +4,17 @@
 #include "experiments/sweeps/sweep.hpp"
 
 #include "core/error.hpp"
+#include "core/random.hpp"
 #include "experiments/sweeps/experiment_library.hpp"
+#include "experiments/sweeps/sweep_journal.hpp"
 #include "experiments/sweeps/sweep_plan.hpp"
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
 
 #include <cmath>
+#include <filesystem>
 #include <string>
+#include <system_error>
 #include <vector>
 
 using namespace kairos;
@@ -287,4 +291,81 @@ TEST_CASE("quantiles interpolate", "[sweep]") {
   CHECK(quantile({3.0}, 0.25) == 3.0);
   CHECK(quantile({1.0, 2.0, 3.0, 4.0}, 0.5) == 2.5);
   CHECK(quantile({1.0, 2.0, 3.0, 4.0, 5.0}, 0.25) == 2.0);
+}
+
+TEST_CASE("a sweep that is killed goes on where it stopped, to the same table", "[sweep][slow]") {
+  const tests::TemporaryFolder folder;
+  const std::string spec = folder.file("spec.toml",
+                                       "scene = \"bounce\"\nmetrics = [\"impacts\", "
+                                       "\"max_penetration\"]\nrepeats = 60\n"
+                                       "[options]\nduration = 600\nframe_jitter = 0.1\n"
+                                       "frame = \"= 1/60\"\n"
+                                       "[[method]]\nscheme = \"original\"\n");
+  const auto sweep = [&](const char* out, double kill_after) {
+    return tests::kairos_program({"sweep", spec, "--out", folder.path(out)},
+                                 {.kill_after = kill_after})
+        .exit_code;
+  };
+  REQUIRE(sweep("whole", 0.0) == 0);
+  const auto rows_of = [&](const char* out) {
+    for (const std::string& name : folder.entries(out)) {
+      if (name.find("_runs.csv") != std::string::npos) {
+        return tests::read_all(folder.path(out) + "/" + name);
+      }
+    }
+    return std::string();
+  };
+  const std::string whole = rows_of("whole");
+  REQUIRE(whole.size() > 1000);
+
+  Random random(20261121);
+  INFO("seed 20261121");
+  std::size_t kept = 0;
+  int grown = 0;
+  for (int kills = 0; kills < 10; ++kills) {
+    (void)sweep("killed", random.uniform(0.03, 0.4));
+    if (!rows_of("killed").empty()) {  // killed while it drew figures: the tables are whole
+      CHECK(rows_of("killed") == whole);
+      std::filesystem::remove_all(folder.path("killed"));
+      kept = 0;
+      continue;
+    }
+    std::error_code none_yet;
+    const auto size = std::filesystem::file_size(folder.path("killed") + "/.spec.rows", none_yet);
+    if (!none_yet) {
+      CHECK(size + 200 >= kept);  // no finished row is lost; a torn one may be
+      grown += size > kept ? 1 : 0;
+      kept = size;
+    }
+  }
+  CHECK(grown >= 3);
+  CHECK(sweep("killed", 0.0) == 0);
+  CHECK(rows_of("killed") == whole);
+  CHECK(folder.entries("killed") == folder.entries("whole"));
+}
+
+TEST_CASE("rows of another sweep, or torn ones, are not taken for this one's", "[sweep]") {
+  const tests::TemporaryFolder folder;
+  const std::string path = folder.path("rows");
+  const std::string key = "kairos sweep 1 0123456789abcdef";
+  RunRecord record;
+  record.status = "completed";
+  record.metrics = {1.5, std::nullopt};
+  {
+    SweepJournal journal(path, key);
+    journal.add(3, record);
+    journal.add(1, record);
+  }
+  CHECK(SweepJournal(path, key).found().size() == 2);
+  const std::string bytes = tests::read_all(path);
+  for (std::size_t cut = 1; cut < 60; ++cut) {  // within the last record
+    const std::string torn = folder.file("torn", bytes.substr(0, bytes.size() - cut));
+    SweepJournal journal(torn, key);
+    REQUIRE(journal.found().size() == 1);
+    CHECK(journal.found().at(3).metrics == record.metrics);
+    journal.add(7, record);
+    CHECK(SweepJournal(torn, key).found().size() == 2);
+  }
+  CHECK(SweepJournal(path, "kairos sweep 1 fedcba9876543210").found().empty());
+  CHECK(SweepJournal(folder.file("foreign", "not a journal"), key).found().empty());
 }

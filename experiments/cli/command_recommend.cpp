@@ -1,0 +1,131 @@
+#include "core/csv.hpp"
+#include "core/error.hpp"
+#include "experiments/cli/commands.hpp"
+#include "experiments/cli/run_options.hpp"
+#include "experiments/run_error.hpp"
+#include "experiments/tradeoff/recommend.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+namespace kairos::experiments {
+namespace {
+
+struct RecommendCommand {
+  SceneOptions scene;
+  std::string error;
+  std::optional<std::string> penetration, budget, duration;
+  std::size_t threads = 0;
+
+  void run() const;
+  [[nodiscard]] Requirements requirements() const;
+};
+
+double number(const std::string& text, const char* option, bool zero_allowed) {
+  const auto x = parse_number(text);
+  if (!x || *x < 0.0 || (*x == 0.0 && !zero_allowed)) {
+    throw InputError(
+        "", 0, option,
+        fmt::format("'{}' is not a finite number {} 0 (m)", text, zero_allowed ? ">=" : ">"));
+  }
+  return *x;
+}
+
+/// `1ms/frame`, or `1ms`.
+double budget_of(std::string text) {
+  constexpr std::string_view per_frame = "/frame";
+  if (text.ends_with(per_frame)) {
+    text.resize(text.size() - per_frame.size());
+  }
+  return parse_duration(text, {"", 0, "--budget"});
+}
+
+Requirements RecommendCommand::requirements() const {
+  Requirements wanted{.error = number(error, "--error", false)};
+  if (penetration) {
+    wanted.penetration = number(*penetration, "--penetration", true);
+  }
+  if (budget) {
+    wanted.budget = budget_of(*budget);
+  }
+  return wanted;
+}
+
+void print_evidence(const Assessment& assessment, const Recommendation& found) {
+  fmt::print("{:<44}{:>12}{:>11}{:>11}{:>11}  {}\n", "method", "work", "end / m", "depth / m",
+             "energy", "");
+  for (const std::size_t i : found.ranked) {
+    const auto& [candidate, run, errors] = assessment.methods[i];
+    const bool whole = run.completed();
+    const auto cell = [whole](double x) { return whole ? fmt::format("{:.2e}", x) : "-"; };
+    fmt::print("{:<44}{:>12}{:>11}{:>11}{:>11}  {}\n", candidate.name, run.work(),
+               cell(errors.position), cell(errors.penetration), cell(errors.energy),
+               found.pick == i                 ? "<- cheapest that does"
+               : found.shortcomings[i].empty() ? "does"
+                                               : found.shortcomings[i]);
+  }
+}
+
+void RecommendCommand::run() const {
+  const Requirements wanted = requirements();
+  const Model model(scene.scene());
+  const double length =
+      duration ? parse_duration(*duration, {"", 0, "--duration"}) : model.scene().duration;
+  const Assessment assessment = assess(model, length, threads);
+  const Recommendation found =
+      recommend(assessment, wanted, mean_frame_duration(model.scene().frames));
+  std::string asked = fmt::format("{} m at the end", wanted.error);
+  if (wanted.penetration) {
+    asked += fmt::format(", at most {} m deep", *wanted.penetration);
+  }
+  if (wanted.budget) {
+    asked += fmt::format(", {} s of work a frame ({} s per counted operation)", *wanted.budget,
+                         nominal_operation);
+  }
+  if (found.pick) {
+    const Assessed& pick = assessment.methods[*found.pick];
+    fmt::print("{}: {}\n  kairos run {} {}\n", assessment.scene, pick.candidate.name,
+               assessment.scene, pick.candidate.options());
+  } else {
+    fmt::print("{}: none of {} methods does\n", assessment.scene, assessment.methods.size());
+  }
+  fmt::print("asked: {}\nevidence: {}; reference: {}, itself uncertain by {:.1e} m\n\n", asked,
+             assessment.reference.sentence, assessment.reference.kind,
+             assessment.reference.position_uncertainty);
+  print_evidence(assessment, found);
+  if (!found.pick) {
+    throw RunError(fmt::format("{}: no method meets {}", assessment.scene, asked));
+  }
+}
+
+}  // namespace
+
+void add_recommend_command(CLI::App& app) {
+  const auto command = std::make_shared<RecommendCommand>();
+  CLI::App* recommend = app.add_subcommand(
+      "recommend", "The cheapest method that meets a bound on a scene, with the evidence");
+  command->scene.add_to(*recommend);
+  recommend->add_option("--error", command->error, "largest error of a position at the end, m")
+      ->required()
+      ->type_name("X");
+  recommend->add_option("--penetration", command->penetration, "deepest penetration, m")
+      ->type_name("P");
+  recommend
+      ->add_option("--budget", command->budget,
+                   "work for a frame, such as 1ms/frame; counted, 100 ns an operation")
+      ->type_name("T");
+  recommend->add_option("--duration", command->duration, "how long, s or with a unit")
+      ->type_name("T");
+  recommend
+      ->add_option("--threads", command->threads,
+                   "0: one per core; the answer does not depend on it")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  recommend->callback([command] { command->run(); });
+}
+
+}  // namespace kairos::experiments

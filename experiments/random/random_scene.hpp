@@ -1,0 +1,52 @@
+#pragma once
+
+#include "core/pose.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace kairos::experiments {
+
+/// A body of a random scene, before it is text.
+struct RandomBody {
+  std::string name;
+  std::string entity;  ///< wall, ball, body, balloon, anti-gravity-pad
+  std::string shape;   ///< sphere, box, half-space
+  double radius = 0.0;
+  Vector3 half_extents = Vector3::Zero();
+  Vector3 normal = Vector3::UnitY();  ///< of a half-space
+  double mass = 1.0;
+  Vector3 position = Vector3::Zero();
+  Vector3 velocity = Vector3::Zero();
+  Vector3 turned = Vector3::Zero();  ///< rotation vector at the start, rad
+  Vector3 spin = Vector3::Zero();    ///< rad/s
+  double restitution = 1.0;
+  Vector3 swing = Vector3::Zero();  ///< amplitude of a driven body, m; zero: nothing drives it
+  double frequency = 0.0;           ///< Hz
+  double phase = 0.0;
+
+  [[nodiscard]] bool moves() const {
+    return entity == "ball" || entity == "body" || entity == "balloon";
+  }
+  /// Of a ball around its place that it does not leave but by moving freely, m.
+  [[nodiscard]] double reach() const;
+};
+
+/// A valid scene that nobody thought of: what a person could have written, none of whose solids
+/// overlap at the start.
+struct RandomScene {
+  std::string name;
+  double duration = 1.0;
+  double frame = 0.1;
+  double G = 0.0;
+  std::vector<RandomBody> bodies;
+
+  /// As a scene file; digits that read back the same.
+  [[nodiscard]] std::string toml() const;
+};
+
+/// The scene of that number: a pure function of seed and index.
+[[nodiscard]] RandomScene random_scene(std::uint64_t seed, std::uint64_t index);
+
+}  // namespace kairos::experiments

@@ -1,0 +1,211 @@
+#include "experiments/random/scene_trial.hpp"
+
+#include "core/error.hpp"
+#include "experiments/metrics/penetration.hpp"
+#include "experiments/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace kairos::experiments {
+namespace {
+
+/// More events than any of these scenes has: they last for a few crossings of the room.
+constexpr std::int64_t most_events = 200000;
+
+struct BrokenPromise {
+  Fate fate;
+  std::string what;
+  double time;
+};
+
+/// Ends the run at the first promise that is broken.
+class Watch : public Recorder {
+ public:
+  void begin(const Model& model) override {
+    model_ = &model;
+    probe_.emplace(model);
+    bodies_ = model.initial_state();
+  }
+  void frame(const Frame& frame) override {
+    check_overlap(frame.bodies, frame.time);
+    // Roundoff: 8 eps of what flowed is the ledger's own promise; twice that is a broken one.
+    const double allowed = 16.0 * std::numeric_limits<double>::epsilon() *
+                           (frame.ledger.flow() + std::abs(frame.ledger.initial_energy()));
+    if (std::abs(frame.ledger.unexplained()) > allowed) {
+      throw BrokenPromise{
+          Fate::ledger,
+          fmt::format("{} J unexplained, allowed {}", frame.ledger.unexplained(), allowed),
+          frame.time.seconds};
+    }
+    if (frame.index > most_events) {
+      throw BrokenPromise{Fate::hang, "frames without end", frame.time.seconds};
+    }
+  }
+  void event(const Event& event) override {
+    if (++events_ > most_events) {
+      throw BrokenPromise{Fate::hang, fmt::format("{} events", events_), event.time.seconds};
+    }
+  }
+
+ private:
+  void check_overlap(std::span<const BodyState> bodies, Instant t) {
+    if (const auto found = probe_->first(bodies)) {
+      throw BrokenPromise{
+          Fate::overlap,
+          fmt::format("'{}' is {:.3g} m inside '{}'", model_->body(found->pair.second).name,
+                      found->depth, model_->body(found->pair.first).name),
+          t.seconds};
+    }
+  }
+
+  const Model* model_ = nullptr;
+  std::optional<PenetrationProbe> probe_;
+  State bodies_;
+  std::int64_t events_ = 0;
+};
+
+Trial trial_of(const RunResult& result) {
+  Trial trial{Fate::right, result.reason, result.end.seconds, result.cost.impacts};
+  if (result.status == RunStatus::stopped) {
+    trial.fate = result.reason.starts_with("not finite") ? Fate::not_finite : Fate::stopped;
+  }
+  return trial;
+}
+
+double rounded(double x, int digits) { return std::stod(fmt::format("{:.{}g}", x, digits)); }
+
+Vector3 rounded(const Vector3& v, int digits) {
+  return {rounded(v[0], digits), rounded(v[1], digits), rounded(v[2], digits)};
+}
+
+void simplify_numbers(RandomScene& scene, int digits) {
+  scene.duration = rounded(scene.duration, digits);
+  scene.frame = rounded(scene.frame, digits);
+  scene.G = rounded(scene.G, digits);
+  for (RandomBody& b : scene.bodies) {
+    for (double* x : {&b.radius, &b.mass, &b.restitution, &b.frequency, &b.phase}) {
+      *x = rounded(*x, digits);
+    }
+    for (Vector3* v : {&b.half_extents, &b.position, &b.velocity, &b.turned, &b.spin, &b.swing}) {
+      *v = rounded(*v, digits);
+    }
+  }
+}
+
+/// Tries smaller scenes and keeps those that still fail.
+class Shrinker {
+ public:
+  Shrinker(RandomScene scene, Fate fate) : scene_(std::move(scene)), fate_(fate) {}
+
+  RandomScene smallest() {
+    for (bool smaller = true; smaller && tries_ < most_tries;) {
+      smaller = fewer_bodies();
+      smaller = shorter() || smaller;
+      smaller = stiller() || smaller;
+    }
+    for (const int digits : {2, 3, 5, 8}) {
+      RandomScene rough = scene_;
+      simplify_numbers(rough, digits);
+      if (keep(rough)) {
+        break;
+      }
+    }
+    return std::move(scene_);
+  }
+
+ private:
+  static constexpr int most_tries = 400;
+
+  bool keep(const RandomScene& smaller) {
+    ++tries_;
+    if (try_scene(smaller).fate != fate_) {
+      return false;
+    }
+    scene_ = smaller;
+    return true;
+  }
+
+  bool fewer_bodies() {
+    bool any = false;
+    for (std::size_t i = scene_.bodies.size(); i-- > 0;) {
+      RandomScene smaller = scene_;
+      smaller.bodies.erase(smaller.bodies.begin() + static_cast<std::ptrdiff_t>(i));
+      any = (!smaller.bodies.empty() && keep(smaller)) || any;
+    }
+    return any;
+  }
+
+  bool shorter() {
+    const double end = try_scene(scene_).time;
+    RandomScene smaller = scene_;
+    smaller.duration = 1.1 * end;
+    return end > 0.0 && smaller.duration < 0.9 * scene_.duration && keep(smaller);
+  }
+
+  bool stiller() {
+    bool any = false;
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+      for (const auto member :
+           {&RandomBody::spin, &RandomBody::turned, &RandomBody::swing, &RandomBody::velocity}) {
+        RandomScene smaller = scene_;
+        Vector3& v = smaller.bodies[i].*member;
+        if (!v.isZero(0.0)) {
+          v.setZero();
+          any = keep(smaller) || any;
+        }
+      }
+    }
+    if (scene_.G != 0.0) {
+      RandomScene smaller = scene_;
+      smaller.G = 0.0;
+      any = keep(smaller) || any;
+    }
+    return any;
+  }
+
+  RandomScene scene_;
+  Fate fate_;
+  int tries_ = 0;
+};
+
+}  // namespace
+
+std::string_view to_string(Fate fate) {
+  switch (fate) {
+    case Fate::right:
+      return "right";
+    case Fate::stopped:
+      return "stopped";
+    case Fate::not_finite:
+      return "not finite";
+    case Fate::overlap:
+      return "overlap";
+    case Fate::ledger:
+      return "energy unexplained";
+    case Fate::hang:
+      return "hang";
+    case Fate::invalid:
+      return "invalid";
+  }
+  return "";
+}
+
+Trial try_scene(const RandomScene& scene) {
+  try {
+    const Model model(parse_scene(scene.toml(), scene.name + ".toml"));
+    Watch watch;
+    return trial_of(simulate(model, {}, watch));
+  } catch (const BrokenPromise& broken) {
+    return {broken.fate, broken.what, broken.time, 0};
+  } catch (const InputError& error) {
+    return {Fate::invalid, error.what(), 0.0, 0};
+  }
+}
+
+RandomScene shrink(const RandomScene& scene, Fate fate) { return Shrinker(scene, fate).smallest(); }
+
+}  // namespace kairos::experiments

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "experiments/random/random_scene.hpp"
+
+#include <string>
+
+namespace kairos::experiments {
+
+/// What became of a scene under `event-driven` with `certified`.
+enum class Fate {
+  right,       ///< ran to its end: finite, no overlap, its energy accounted for
+  stopped,     ///< said why it cannot go on
+  not_finite,  ///< NaN or infinity
+  overlap,     ///< solids inside each other in a drawn frame or at an impact
+  ledger,      ///< energy that no line explains, beyond roundoff
+  hang,        ///< more events than can be
+  invalid,     ///< refused: the scene is wrong, which is the generator's mistake
+};
+[[nodiscard]] std::string_view to_string(Fate fate);
+
+struct Trial {
+  Fate fate = Fate::right;
+  std::string reason;  ///< of a stop; what failed
+  double time = 0.0;   ///< when, s
+  std::int64_t impacts = 0;
+
+  /// A promise that was broken: not a stop that says why.
+  [[nodiscard]] bool failed() const { return fate != Fate::right && fate != Fate::stopped; }
+};
+
+/// Runs the scene and watches.
+[[nodiscard]] Trial try_scene(const RandomScene& scene);
+
+/// A smaller scene that fails in the same way: fewer bodies, shorter, simpler numbers.
+[[nodiscard]] RandomScene shrink(const RandomScene& scene, Fate fate);
+
+}  // namespace kairos::experiments

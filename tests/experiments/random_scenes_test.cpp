@@ -1,0 +1,233 @@
+// Random valid scenes: no NaN, no overlap, no hang; and what a run must not depend on: where the
+// origin is, which way the axes point, the units, the order of the file, and being interrupted.
+
+#include "core/random.hpp"
+#include "experiments/parallel_for.hpp"
+#include "experiments/random/scene_trial.hpp"
+#include "experiments/simulation.hpp"
+#include "tests/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+using namespace kairos;
+using namespace kairos::experiments;
+
+namespace {
+
+constexpr std::uint64_t seed = 20261121;
+
+/// The end of a run; nothing where it stopped.
+std::optional<RunResult> end_of(const RandomScene& scene, const std::string& integrator = "auto") {
+  Recorder nobody;
+  RunChoice choice;
+  choice.method.integrator = integrator;
+  RunResult result =
+      simulate(Model(parse_scene(scene.toml(), scene.name + ".toml")), choice, nobody);
+  return result.status == RunStatus::completed ? std::optional(std::move(result)) : std::nullopt;
+}
+
+double size_of(const RandomScene& scene) {
+  double size = 0.0;
+  for (const RandomBody& b : scene.bodies) {
+    size = std::max(size, b.position.norm());
+  }
+  return size;
+}
+
+/// Moves a scene rigidly: p -> turn p + shift, and with `mirrored` first x -> -x.
+RandomScene moved(RandomScene scene, const Quaternion& turn, const Vector3& shift, bool mirrored) {
+  const Vector3 flip(mirrored ? -1.0 : 1.0, 1.0, 1.0);
+  const auto vector = [&](const Vector3& v) { return Vector3(turn * v.cwiseProduct(flip)); };
+  // Angular quantities are axial: a mirror turns them the other way round.
+  const auto axial = [&](const Vector3& v) {
+    return Vector3(turn * Vector3((mirrored ? -1.0 : 1.0) * v.cwiseProduct(flip)));
+  };
+  for (RandomBody& b : scene.bodies) {
+    b.position = vector(b.position) + shift;
+    b.velocity = vector(b.velocity);
+    b.normal = vector(b.normal).normalized();
+    b.swing = vector(b.swing);
+    b.spin = axial(b.spin);
+    const Vector3 turned = mirrored ? Vector3(-b.turned.cwiseProduct(flip)) : b.turned;
+    const double angle = turned.norm();
+    Quaternion q = turn;
+    if (angle > 0.0) {
+      q = turn * Quaternion(Eigen::AngleAxisd(angle, turned / angle));
+    }
+    const Eigen::AngleAxisd whole(q);
+    b.turned =
+        b.shape == "half-space" ? Vector3(Vector3::Zero()) : Vector3(whole.axis() * whole.angle());
+  }
+  return scene;
+}
+
+/// Roundoff in the start, multiplied at each impact: two round bodies of radius r that meet after a
+/// flight of L scatter by 2L/r, here by less than 200.
+double tolerance(const RandomScene& scene, std::int64_t impacts, double coordinates) {
+  return 1e-14 * std::max(size_of(scene), coordinates) *
+         std::pow(200.0, static_cast<double>(impacts + 1));
+}
+
+struct Compared {
+  int scenes = 0;
+  int with_impacts = 0;
+};
+
+/// Runs scenes with few impacts as they are and moved, and compares where things end.
+template <typename Draw>
+Compared compare_moved(int count, const Draw& draw, bool mirrored) {
+  Compared compared;
+  for (int k = 0; k < count; ++k) {
+    Random random(seed, static_cast<std::uint64_t>(k));
+    const RandomScene scene = random_scene(seed, static_cast<std::uint64_t>(k));
+    const auto plain = end_of(scene);
+    if (!plain || plain->cost.impacts > 3) {
+      continue;
+    }
+    const auto [turn, shift] = draw(random, size_of(scene));
+    const auto there = end_of(moved(scene, turn, shift, mirrored));
+    CAPTURE(k, plain->cost.impacts, shift.norm());
+    REQUIRE(there);
+    CHECK(there->cost.impacts == plain->cost.impacts);
+    const Vector3 flip(mirrored ? -1.0 : 1.0, 1.0, 1.0);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < plain->state.size(); ++i) {
+      const Vector3 expected = turn * plain->state[i].pose.position.cwiseProduct(flip) + shift;
+      worst = std::max(worst, (there->state[i].pose.position - expected).norm());
+    }
+    CHECK(worst <= tolerance(scene, plain->cost.impacts, shift.norm()));
+    ++compared.scenes;
+    compared.with_impacts += plain->cost.impacts > 0 ? 1 : 0;
+  }
+  return compared;
+}
+
+void check_enough(const Compared& compared) {
+  CAPTURE(compared.scenes, compared.with_impacts);
+  CHECK(compared.scenes > 15);
+  CHECK(compared.with_impacts > 8);
+}
+
+}  // namespace
+
+TEST_CASE("a thousand random scenes: no NaN, no overlap, no hang, few stops", "[random][slow]") {
+  constexpr std::size_t count = 1000;
+  std::vector<Trial> trials(count);
+  parallel_for(count, 0, [&](std::size_t i) { trials[i] = try_scene(random_scene(seed, i)); });
+  int stops = 0;
+  std::int64_t impacts = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    INFO("kairos random-scenes --seed " << seed << " --first " << i << " --count 1: "
+                                        << to_string(trials[i].fate) << ": " << trials[i].reason);
+    CHECK_FALSE(trials[i].failed());
+    stops += trials[i].fate == Fate::stopped ? 1 : 0;
+    impacts += trials[i].impacts;
+  }
+  CHECK(stops <= 50);
+  CHECK(impacts > 4000);
+}
+
+TEST_CASE("a scene that fails is shrunk to a small one that fails in the same way", "[random]") {
+  // A stop stands for a failure: event-driven has none to offer.
+  std::uint64_t index = 0;
+  while (try_scene(random_scene(seed, index)).fate != Fate::stopped) {
+    ++index;
+  }
+  const RandomScene scene = random_scene(seed, index);
+  const RandomScene small = shrink(scene, Fate::stopped);
+  CAPTURE(index, small.toml());
+  CHECK(try_scene(small).fate == Fate::stopped);
+  CHECK(small.bodies.size() <= 6);
+  CHECK(small.bodies.size() < scene.bodies.size());
+  CHECK(small.duration <= scene.duration);
+  // What is written is what was run.
+  CHECK(random_scene(seed, index).toml() == scene.toml());
+}
+
+TEST_CASE("a run does not depend on where the origin is", "[random][invariance]") {
+  check_enough(compare_moved(
+      60,
+      [](Random& random, double size) {
+        return std::pair(Quaternion::Identity(), Vector3(random.direction() * 8.0 * size));
+      },
+      false));
+}
+
+TEST_CASE("a run does not depend on which way the axes point", "[random][invariance]") {
+  check_enough(compare_moved(
+      60,
+      [](Random& random, double /*size*/) {
+        const double angle = random.uniform(0.0, 6.28);  // about the vertical: gravity stays
+        return std::pair(Quaternion(Eigen::AngleAxisd(angle, Vector3::UnitY())),
+                         Vector3(Vector3::Zero()));
+      },
+      false));
+}
+
+TEST_CASE("a run in a mirror is the mirrored run", "[random][invariance]") {
+  check_enough(compare_moved(
+      60,
+      [](Random& /*random*/, double /*size*/) {
+        return std::pair(Quaternion::Identity(), Vector3(Vector3::Zero()));
+      },
+      true));
+}
+
+TEST_CASE("a run does not depend on units", "[random][invariance]") {
+  constexpr double length = 4.0, time = 16.0, mass = 64.0;
+  int compared = 0;
+  for (std::uint64_t k = 0; k < 60; ++k) {
+    const RandomScene scene = random_scene(seed, k);
+    RandomScene other = scene;
+    other.duration *= time;
+    other.frame *= time;
+    other.G *= length / (time * time);
+    for (RandomBody& b : other.bodies) {
+      b.radius *= length;
+      b.half_extents *= length;
+      b.mass *= mass;
+      b.position *= length;
+      b.velocity *= length / time;
+      b.spin /= time;
+      b.swing *= length;
+      b.frequency /= time;
+    }
+    const auto plain = end_of(scene, "closed-form");  // controlled integrators know metres
+    if (!plain || plain->cost.impacts > 3) {
+      continue;
+    }
+    const auto scaled = end_of(other, "closed-form");
+    CAPTURE(k, plain->cost.impacts);
+    REQUIRE(scaled);
+    CHECK(scaled->cost.impacts == plain->cost.impacts);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < plain->state.size(); ++i) {
+      worst = std::max(
+          worst, (scaled->state[i].pose.position / length - plain->state[i].pose.position).norm());
+    }
+    CHECK(worst <= tolerance(scene, plain->cost.impacts, 0.0));
+    ++compared;
+  }
+  CHECK(compared > 15);
+}
+
+TEST_CASE("a run does not depend on the order of the file", "[random][invariance]") {
+  for (std::uint64_t k = 0; k < 60; ++k) {
+    const RandomScene scene = random_scene(seed, k);
+    RandomScene other = scene;
+    std::reverse(other.bodies.begin(), other.bodies.end());
+    const auto plain = end_of(scene);
+    const auto reversed = end_of(other);
+    CAPTURE(k);
+    REQUIRE(plain.has_value() == reversed.has_value());
+    for (std::size_t i = 0; plain && i < plain->state.size(); ++i) {
+      const std::size_t j = plain->state.size() - 1 - i;
+      CHECK(reversed->state[j].pose.position == plain->state[i].pose.position);
+      CHECK(reversed->state[j].twist.linear == plain->state[i].twist.linear);
+    }
+  }
+}
