@@ -53,7 +53,10 @@ struct Method {
 
 std::array<Method, 8> methods() {
   const auto method = [](std::string_view name, const char* scheme, const char* detector) {
-    return Method{name, {.method = {scheme, "auto", detector, "newton"}, .stepper = {1e-10, 1e-8}, .max_substeps = 2000}};
+    return Method{name,
+                  {.method = {scheme, "auto", detector, "newton"},
+                   .stepper = {1e-10, 1e-8},
+                   .max_substeps = 2000}};
   };
   std::array<Method, 8> all{
       {{"thesis", {.method = MethodChoice::thesis()}},

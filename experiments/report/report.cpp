@@ -59,9 +59,22 @@ std::string facts_html(const ReportEntry& entry) {
   return out + "</dl>\n" + files_html(entry);
 }
 
+/// The tables that an experiment which is no sweep wants to be seen.
+std::string shown_tables_html(const ReportEntry& entry) {
+  std::string out;
+  for (const auto& [key, name] : entry.manifest) {
+    if (key == "table") {
+      out += fmt::format("<p class=\"note\"><a href=\"{0}/{1}.csv\">{1}.csv</a></p>\n{2}",
+                         html(entry.name), html(name),
+                         csv_table_html(entry.folder + "/" + name + ".csv"));
+    }
+  }
+  return out.empty() ? "" : "<h3>The numbers</h3>\n" + out;
+}
+
 std::string tables_html(const ReportEntry& entry) {
   if (entry.sweeps().empty()) {
-    return "";
+    return shown_tables_html(entry);
   }
   std::string out = "<h3>The numbers</h3>\n";
   if (entry.name == "overview") {

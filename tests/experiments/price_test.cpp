@@ -1,0 +1,195 @@
+// What accuracy costs, and where methods break: tradeoff, recommend, the stability map, savings.
+
+#include "core/exact_solution.hpp"
+#include "experiments/ablation/ablation_experiment.hpp"
+#include "experiments/extremes/extremes_experiment.hpp"
+#include "experiments/parallel_for.hpp"
+#include "experiments/scene_library.hpp"
+#include "experiments/tradeoff/recommend.hpp"
+#include "tests/catch.hpp"
+#include "tests/experiments/program.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+using namespace kairos;
+using namespace kairos::experiments;
+
+namespace {
+
+/// Scenes that no experiment and no shipped scene has, each with an exact solution.
+constexpr std::string_view thrown = R"(name = "thrown"
+summary = "a ball is thrown at a floor"
+duration = 3.3
+frame = "1/50"
+G = 3.71
+[[body]]
+name = "floor"
+entity = "wall"
+shape = "half-space"
+[[body]]
+name = "ball"
+entity = "ball"
+radius = 0.03
+mass = 0.4
+position = [0.0, 2.17, 0.0]
+velocity = [0.7, -1.3, 0.2]
+[exact]
+solution = "elastic-drop"
+)";
+
+constexpr std::string_view shot = R"(name = "shot"
+summary = "a ball flies at a plate"
+duration = 0.31
+frame = "1/75"
+G = 0.0
+[[body]]
+name = "plate"
+entity = "wall"
+half_extents = [0.04, 1.0, 1.0]
+normal = [-1.0, 0.0, 0.0]
+position = [0.3, 0.0, 0.0]
+[[body]]
+name = "ball"
+entity = "ball"
+radius = 0.07
+mass = 2.0
+restitution = 0.8
+position = [-1.4, 0.0, 0.0]
+velocity = [9.1, 0.0, 0.0]
+[exact]
+solution = "reflection"
+)";
+
+constexpr std::string_view row = R"(name = "row"
+summary = "three equal balls on a line"
+duration = 1.7
+frame = "1/60"
+G = 0.0
+[[body]]
+name = "a"
+entity = "ball"
+radius = 0.05
+mass = 0.3
+position = [-1.0, 0.0, 0.0]
+velocity = [2.3, 0.0, 0.0]
+[[body]]
+name = "b"
+entity = "ball"
+radius = 0.05
+mass = 0.3
+position = [0.0, 0.0, 0.0]
+[[body]]
+name = "c"
+entity = "ball"
+radius = 0.05
+mass = 0.3
+position = [0.6, 0.0, 0.0]
+velocity = [0.4, 0.0, 0.0]
+[exact]
+solution = "equal-masses"
+)";
+
+/// How far the method is off where the exact solution says it should be, m.
+double error_against_exact(const Model& model, const RunChoice& choice) {
+  const auto exact = solve_exactly(model.scene());
+  Recorder nobody;
+  const RunResult result = simulate(model, choice, nobody);
+  REQUIRE(result.status == RunStatus::completed);
+  double worst = 0.0;
+  for (BodyIndex i = 0; i < model.size(); ++i) {
+    const auto state = exact->state(i, Instant{} + model.scene().duration);
+    if (model.is_free(i) && state) {
+      worst = std::max(worst, (result.state[i].pose.position - state->pose.position).norm());
+    }
+  }
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("what recommend picks meets the bound on scenes held apart", "[recommend]") {
+  for (const std::string_view text : {thrown, shot, row}) {
+    const Model model(parse_scene(text, "apart.toml"));
+    const double frame = mean_frame_duration(model.scene().frames);
+    const Assessment assessment = assess(model, model.scene().duration, 0);
+    CHECK(assessment.reference.kind == "exact solution");
+    std::int64_t work = 0;
+    for (const double bound : {1e-1, 1e-3, 1e-9}) {
+      const Recommendation found =
+          recommend(assessment, {.error = bound, .penetration = 0.0}, frame);
+      CAPTURE(model.scene().name, bound);
+      REQUIRE(found.pick);
+      const Assessed& pick = assessment.methods[*found.pick];
+      CAPTURE(pick.candidate.name);
+      CHECK(error_against_exact(model, pick.candidate.choice) <= bound);
+      CHECK(pick.run.metrics.max_depth == 0.0);
+      CHECK(pick.run.work() >= work);  // a tighter bound is never cheaper
+      work = pick.run.work();
+      for (std::size_t i = 0; i < assessment.methods.size(); ++i) {
+        // Nothing that does is cheaper.
+        CHECK((!found.shortcomings[i].empty() ||
+               assessment.methods[i].run.work() >= pick.run.work()));
+      }
+    }
+    // What nobody can: none.
+    CHECK_FALSE(recommend(assessment, {.error = 1e-30, .penetration = {}}, frame).pick);
+    Requirements hasty{.error = 1.0};
+    hasty.budget = 1e-12;
+    CHECK_FALSE(recommend(assessment, hasty, frame).pick);
+  }
+}
+
+TEST_CASE("the commands tradeoff and recommend: evidence, the same each time", "[recommend]") {
+  const auto once = tests::kairos_program({"recommend", "bullet", "--error", "1e-6"});
+  const auto again =
+      tests::kairos_program({"recommend", "bullet", "--error", "1e-6", "--threads", "1"});
+  CHECK(once.exit_code == 0);
+  CHECK(once.out == again.out);
+  CHECK(once.out.find("kairos run bullet --scheme") != std::string::npos);
+  CHECK(once.out.find("exact solution") != std::string::npos);
+  const auto none = tests::kairos_program({"recommend", "bullet", "--error", "1e-300"});
+  CHECK(none.exit_code == 1);
+  CHECK(none.out.find("none of") != std::string::npos);
+  CHECK(tests::kairos_program({"recommend", "bullet", "--error", "0"}).exit_code == 2);
+  CHECK(tests::kairos_program({"recommend", "bullet", "--error", "nan"}).exit_code == 2);
+  CHECK(tests::kairos_program({"recommend", "bullet"}).exit_code == 2);
+  CHECK(tests::kairos_program({"recommend", "bullet", "--error", "1", "--budget", "soon"})
+            .exit_code == 2);
+  const auto chaotic = tests::kairos_program({"tradeoff", "billiard"});
+  CHECK(chaotic.exit_code == 0);
+  CHECK(chaotic.out.find("chaotic: compared up to") != std::string::npos);
+}
+
+TEST_CASE("event-driven with certified: no cell of the stability map is wrong in silence or hung",
+          "[extremes][slow]") {
+  const std::vector<ExtremeCase> cases = extreme_cases(Size::quick);
+  RunChoice choice;
+  choice.stepper = {1e-10, 1e-8};
+  std::vector<Judged> judged(cases.size());
+  parallel_for(cases.size(), 0, [&](std::size_t i) { judged[i] = judge(cases[i], choice); });
+  std::size_t right = 0;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    CAPTURE(cases[i].family, cases[i].x_name, cases[i].x, cases[i].y_name, cases[i].y,
+            judged[i].error, judged[i].reason);
+    CHECK(judged[i].verdict != Verdict::wrong_in_silence);
+    CHECK(judged[i].verdict != Verdict::hung);
+    right += judged[i].verdict == Verdict::right ? 1 : 0;
+  }
+  CAPTURE(right, cases.size());
+  CHECK(right * 10 >= cases.size() * 8);
+}
+
+TEST_CASE("each saving of the model saves, and changes no answer", "[ablation]") {
+  for (const Ablation& ablation : ablations()) {
+    const Ablated r = ablate(ablation);
+    CAPTURE(ablation.saving, ablation.scene, r.difference);
+    CHECK(r.difference <= ablation.tolerance);
+    const auto work = [](const Cost& c) {
+      return c.right_hand_sides + c.toi_queries + c.toi_evaluations + c.overlap_tests;
+    };
+    // Leaving an orientation out makes each right-hand side shorter, not fewer.
+    CHECK((work(r.with) < work(r.without) || ablation.saving == "orientation left out"));
+  }
+}
