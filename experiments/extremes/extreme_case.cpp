@@ -229,7 +229,11 @@ class Cases {
 
   /// A long box that turns in place meets the corner of a plate: when, is known.
   void spin() {
-    for (const double angle : {1.0, 40.0, 1e3, 1e4, 1e5, 4e5}) {  // rad in a frame
+    std::vector<double> angles{1.0, 40.0, 1e3};  // rad in a frame
+    if (full_) {  // integrators take some 1e7 steps of a body that tumbles so fast
+      angles.insert(angles.end(), {1e4, 1e5, 4e5});
+    }
+    for (const double angle : angles) {
       const double w = angle / h;
       const double reach = std::hypot(0.3, 0.005);
       const double turned =
