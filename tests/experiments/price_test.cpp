@@ -149,7 +149,7 @@ TEST_CASE("the commands tradeoff and recommend: evidence, the same each time", "
   CHECK(once.out == again.out);
   CHECK(once.out.find("kairos run bullet --scheme") != std::string::npos);
   CHECK(once.out.find("exact solution") != std::string::npos);
-  const auto none = tests::kairos_program({"recommend", "bullet", "--error", "1e-300"});
+  const auto none = tests::kairos_program({"recommend", "bounce", "--error", "1e-300"});
   CHECK(none.exit_code == 1);
   CHECK(none.out.find("none of") != std::string::npos);
   CHECK(tests::kairos_program({"recommend", "bullet", "--error", "0"}).exit_code == 2);
