@@ -86,9 +86,9 @@ TEST_CASE("reproduce --only makes one figure, the same bytes each time", "[figur
   const TemporaryFolder folder;
   for (const char* out : {"one", "two"}) {
     const auto outcome =
-        kairos_program({"reproduce", "--only", "fig13", "--out", folder.path(out)});
+        kairos_program({"reproduce", "--only", "fig15", "--out", folder.path(out)});
     CHECK(outcome.exit_code == 0);
-    CHECK(outcome.out.find("fig13: data in") != std::string::npos);
+    CHECK(outcome.out.find("fig15: data in") != std::string::npos);
   }
   const std::vector<std::string> files = folder.entries("one");
   CHECK(files.size() >= 8);  // without Python no pictures

@@ -43,7 +43,7 @@ def draw(data, figures):
     usual = {}
     for method in methods:
         given = [row["answer"] for row in pick(answers, method=method)]
-        usual[method] = max(set(map(str, given)), key=lambda a: [str(g) for g in given].count(a))
+        usual[method] = max(dict.fromkeys(map(str, given)), key=lambda a: [str(g) for g in given].count(a))
     bottoms = [0.3, 0.3, 0.3]  # of each column of cards, the gap to the next one included
     base = card(panel, 0.0, 0.0, 2.9, f"{root} of a body", [common, [m + "()" for m in methods]])
     for row in classes:

@@ -20,7 +20,7 @@ def edge(start, end):
 def diagram(panel, transitions, places):
     """places: where each stage of the trace stands. Stages that did not happen are not drawn."""
     happened = {row["from"] for row in transitions} | {row["to"] for row in transitions}
-    for stage in happened:
+    for stage in sorted(happened):
         fill = drawing.FIRST if stage == "draw" else "white"
         drawing.node(panel, *places[stage], NAMES[stage], WIDTH, HEIGHT, fill)
     pairs = {(row["from"], row["to"]) for row in transitions}
