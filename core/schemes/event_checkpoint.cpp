@@ -16,7 +16,8 @@ void EventQueue::persist(Archive& archive) { archive(heap_); }
 
 void EventWorld::Actor::persist(Archive& archive) {
   archive(motion, version, horizon, reach, support, contact_begins, fields, creeping, last_impact,
-          last_speed, swept.lower, swept.upper);
+          last_speed, impacts, octave_start, octave_duration, accelerating, swept.lower,
+          swept.upper);
 }
 
 void EventWorld::Flow::persist(Archive& archive) {

@@ -51,8 +51,12 @@ class EventWorld {
     std::vector<BodyIndex> fields;              ///< it is in
     int creeping = 0;                           ///< impacts in a row between which it hardly moved
     Instant last_impact = Instant::never();
-    double last_speed = 0.0;  ///< after that impact, m/s
-    Aabb swept{};             ///< what the broad phase was told
+    double last_speed = 0.0;       ///< after that impact, m/s
+    std::int64_t impacts = 0;      ///< so far
+    Instant octave_start{};        ///< when `impacts` was last a power of two
+    double octave_duration = 0.0;  ///< of the doubling before, s
+    int accelerating = 0;          ///< doublings in a row, each shorter than the one before
+    Aabb swept{};                  ///< what the broad phase was told
 
     void persist(Archive& archive);
   };
@@ -123,6 +127,7 @@ class EventWorld {
   void segment_end(BodyIndex i, Instant t);
   void relaunch(BodyIndex a, BodyIndex b, Instant t);
   [[nodiscard]] bool creeps(BodyIndex i, double reach, Instant t);
+  [[nodiscard]] bool accelerates(BodyIndex i, double reach, Instant t);
   [[nodiscard]] double rest_tolerance(BodyIndex a, BodyIndex b, double e) const;
   void note(EventKind kind, BodyIndex a, BodyIndex b, Instant t);
   void stop(Instant t, std::string reason);
