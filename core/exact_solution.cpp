@@ -18,12 +18,8 @@ ExactSolutionType oscillator();
 
 std::span<const ExactSolutionType> exact_solution_catalogue() {
   static const ExactSolutionType catalogue[] = {
-      exact::elastic_drop(),
-      exact::inelastic_drop(),
-      exact::equal_masses(),
-      exact::reflection(),
-      exact::drag_drop(),
-      exact::oscillator(),
+      exact::elastic_drop(), exact::inelastic_drop(), exact::equal_masses(),
+      exact::reflection(),   exact::drag_drop(),      exact::oscillator(),
   };
   return catalogue;
 }

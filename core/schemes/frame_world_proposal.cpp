@@ -54,9 +54,8 @@ void FrameWorld::fly(Mover& mover, double from, double to) {
 const Motion& FrameWorld::path_motion(BodyIndex i, double s) const {
   const std::vector<Motion>& path = paths_[i];
   // A stiff force makes many motions of one frame: they are not searched one by one.
-  const auto after = std::partition_point(path.begin() + 1, path.end(), [&](const Motion& motion) {
-    return motion.start - now_ <= s;
-  });
+  const auto after = std::partition_point(
+      path.begin() + 1, path.end(), [&](const Motion& motion) { return motion.start - now_ <= s; });
   return *(after - 1);
 }
 
