@@ -32,9 +32,11 @@ class Watch : public Recorder {
   }
   void frame(const Frame& frame) override {
     check_overlap(frame.bodies, frame.time);
-    // Roundoff: 8 eps of what flowed is the ledger's own promise; twice that is a broken one.
-    const double allowed = 16.0 * std::numeric_limits<double>::epsilon() *
-                           (frame.ledger.flow() + std::abs(frame.ledger.initial_energy()));
+    // Roundoff: 8 eps of what flowed, and of the two sums of the balance, is the ledger's own
+    // promise (kinetic and potential energy can be large and cancel); twice that is a broken one.
+    const double scale =
+        frame.ledger.flow() + frame.ledger.kinetic() + std::abs(frame.ledger.potential());
+    const double allowed = 16.0 * std::numeric_limits<double>::epsilon() * scale;
     if (std::abs(frame.ledger.unexplained()) > allowed) {
       throw BrokenPromise{
           Fate::ledger,
