@@ -35,7 +35,7 @@ def frames_against_bodies(figures, rows):
         panel.set_xlabel("balls")
     panels[0].set_ylabel("work for a frame / ms")
     style.legend_below(figure, panels, columns=4)
-    figures.save(figure, "frames", "Time that a frame takes, one second of a gas at 60 Hz: measured "
+    figures.save(figure, "timing-frames", "Time that a frame takes, one second of a gas at 60 Hz: measured "
                  "on the machine that made this page.")
 
 

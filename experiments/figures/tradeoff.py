@@ -58,7 +58,7 @@ def by_time(figures, scene, rows, times):
     panel.set_xlabel("least seconds of several rounds, in turn; the line ends at the slowest")
     panel.set_ylabel("position at the end / m")
     style.legend_below(figure, [panel], columns=3)
-    figures.save(figure, f"{scene}-time", f"{scene}: the same against measured time, which differs "
+    figures.save(figure, f"timing-{scene}", f"{scene}: the same against measured time, which differs "
                  "from run to run.")
 
 
