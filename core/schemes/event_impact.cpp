@@ -142,6 +142,7 @@ void EventWorld::impact(BodyIndex a, BodyIndex b, Instant t, double patience, bo
   const double scale =
       std::abs(approach) + now_[a].twist.linear.norm() + now_[b].twist.linear.norm();
   if (rebound < -16.0 * epsilon * scale) {  // roundoff of a product and a few sums
+    depart(a, b, t);
     return stop(t, fmt::format("still approaching: the impact law '{}' leaves {} approaching each "
                                "other at {} m/s",
                                law_.info().name, names(a, b), -rebound));
@@ -196,6 +197,7 @@ void EventWorld::land(BodyIndex a, BodyIndex b, const Contact& contact, Instant 
   for (const BodyIndex i : {a, b}) {
     const double hop = small_hop * smallest_extent(model_.shape(i));
     if (model_.is_free(i) && (accelerates(i, hop, t) || creeps(i, tolerance, t))) {
+      depart(a, b, t);  // what the last frame shows, and the ledger has booked
       return stop(t, fmt::format("accumulation: impacts of {} follow each other without end, and "
                                  "that is not a ball on a surface",
                                  names(a, b)));
@@ -260,7 +262,8 @@ void EventWorld::settle(BodyIndex ball, const Support& support, double rebound, 
   predict(ball, t);
 }
 
-void EventWorld::relaunch(BodyIndex a, BodyIndex b, Instant t) {
+/// The islands of the two fly on from `now_`, where an impact has put them.
+void EventWorld::depart(BodyIndex a, BodyIndex b, Instant t) {
   for (const BodyIndex i : {a, b}) {
     if (model_.is_free(i)) {
       for (const BodyIndex k : flow_of(i).island.bodies) {
@@ -281,6 +284,12 @@ void EventWorld::relaunch(BodyIndex a, BodyIndex b, Instant t) {
     }
     launch(i, t);
   }
+}
+
+void EventWorld::relaunch(BodyIndex a, BodyIndex b, Instant t) {
+  depart(a, b, t);
+  const bool together =
+      model_.is_free(a) && model_.is_free(b) && model_.island_of(a) == model_.island_of(b);
   for (const BodyIndex i : {a, b}) {
     if (!model_.is_free(i) || (together && i == b)) {
       continue;

@@ -125,6 +125,7 @@ class EventWorld {
   void riders(BodyIndex surface, Instant t);
   void cross_field(BodyIndex a, BodyIndex b, Instant t, bool entering);
   void segment_end(BodyIndex i, Instant t);
+  void depart(BodyIndex a, BodyIndex b, Instant t);
   void relaunch(BodyIndex a, BodyIndex b, Instant t);
   [[nodiscard]] bool creeps(BodyIndex i, double reach, Instant t);
   [[nodiscard]] bool accelerates(BodyIndex i, double reach, Instant t);

@@ -200,7 +200,8 @@ Trial try_scene(const RandomScene& scene) {
   try {
     const Model model(parse_scene(scene.toml(), scene.name + ".toml"));
     Watch watch;
-    return trial_of(simulate(model, {}, watch));
+    return trial_of(
+        simulate(model, {.roundoff = true}, watch));  // so that it is no unexplained rest
   } catch (const BrokenPromise& broken) {
     return {broken.fate, broken.what, broken.time, 0};
   } catch (const InputError& error) {

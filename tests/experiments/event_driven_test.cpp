@@ -224,6 +224,7 @@ TEST_CASE("the thesis' conveyor swallows a light ball: the run stops and says so
   CHECK(sim.result.status == RunStatus::stopped);
   CHECK(sim.result.reason.find("still approaching") != std::string::npos);
   CHECK(sim.result.reason.find("'belt'") != std::string::npos);
+  check_ledger(sim.result);  // the last frame shows what the last impact left
 }
 
 TEST_CASE("a box that rocks to rest stops the run as an accumulation", "[event-driven]") {
@@ -239,6 +240,7 @@ restitution = 0.3
 )");
   CHECK(sim.result.status == RunStatus::stopped);
   CHECK(sim.result.reason.find("accumulation") != std::string::npos);
+  check_ledger(sim.result);
   CHECK(sim.result.end.seconds > 0.3);  // it fell and bounced first
 }
 
