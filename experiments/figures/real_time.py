@@ -44,7 +44,7 @@ def late_frames(figures, rows):
     settings = unique(str(r["frames"]) for r in rows)
     figure, panels = plt.subplots(len(scenes), 2, figsize=(9.6, 5.6), sharex=True)
     for line, scene in zip(panels, scenes):
-        for panel, column, label in zip(line, ("max_penetration", "energy_error_relative"),
+        for panel, column, label in zip(line, ("max_penetration", "energy_error"),
                                         ("deepest penetration / m", "energy error, relative")):
             for method in names(rows):
                 values = [pick(rows, scene=scene, method=method, frames=s)[0][column] for s in settings]

@@ -163,11 +163,9 @@ Table stall_table(int repeats, std::size_t threads) {
                                              {"both", 0.5, 0.02}}};
   const std::array<Method, 6> all = methods();
   const std::array<std::string_view, 2> scenes{"bounce", "bounce-inelastic"};
-  const std::vector<std::string> metrics{"max_penetration", "overlap_time",
-                                         "energy_error_relative"};
-  Table table{{"scene", "frames", "method", "runs", "max_penetration", "overlap_time",
-               "energy_error_relative"},
-              {}};
+  const std::vector<std::string> metrics{"max_penetration", "overlap_time", "energy_error"};
+  Table table{
+      {"scene", "frames", "method", "runs", "max_penetration", "overlap_time", "energy_error"}, {}};
   table.rows.resize(scenes.size() * settings.size() * all.size());
   parallel_for(table.rows.size(), threads, [&](std::size_t i) {
     const Method& method = all[i % all.size()];
@@ -185,7 +183,7 @@ Table stall_table(int repeats, std::size_t threads) {
       MetricRecorder recorder({metrics, ""});
       const RunResult result = simulate(model, choice, recorder);
       for (std::size_t j = 0; j < metrics.size(); ++j) {
-        worst[j] = std::max(worst[j], std::abs(recorder.value(metrics[j], result).value_or(0.0)));
+        worst[j] = std::max(worst[j], std::abs(recorder.value(metrics[j], result).value()));
       }
     }
     table.rows[i] = {scene,
