@@ -60,7 +60,7 @@ inline void silence_erkstep(void* solver) {
 #endif
 
 /// Before 6.6 ERKStep takes the last stage of every table that ends at c = 1 for y' at the end of
-/// the step, which is true of first-same-as-last tables only. Cf. the project's issue 311.
+/// the step, which is true of first-same-as-last tables only. Cf. issue 311 of SUNDIALS.
 inline constexpr bool erkstep_reuses_last_stage =
     SUNDIALS_VERSION_MAJOR < 6 || (SUNDIALS_VERSION_MAJOR == 6 && SUNDIALS_VERSION_MINOR < 6);
 
