@@ -140,6 +140,17 @@ class Advancement {
     return true;
   }
 
+  /// How far ahead a gap within roundoff is first looked at, s: the time to cover `length` at
+  /// `speed`, and never so little that 200 doublings would not reach the end of the window. Without
+  /// that a query that starts at 0, where an ulp is nothing, would answer before it got anywhere,
+  /// and whoever asks again from there would ask for ever.
+  double first_look(double length, double speed) const {
+    const double remaining = motion_.duration() - k_.t;
+    const double least = std::ldexp(std::isfinite(remaining) ? remaining : 1.0, -150);
+    const double crossing = length / speed;
+    return std::max({8.0 * ulp(k_.t), least, std::isfinite(crossing) ? crossing : 0.0});
+  }
+
   /// Looks ahead from a gap within tolerance for a proven overlap. True if that settles the query.
   bool resolve_contact() {
     if (!prove_) {  // a pair that leaves is followed: it has just met
@@ -147,11 +158,8 @@ class Advancement {
     }
     const Kinematics here = k_;
     const Witness witness = witness_;
-    const double rate = approach();
     const double reach = witness.gap + 4.0 * k_.error / witness.length;
-    // A pair that leaves is followed until it is clear of roundoff; ulp(0) alone would never get
-    // there.
-    double ahead = std::max(8.0 * ulp(here.t), rate != 0.0 ? 1.5 * reach / std::abs(rate) : 0.0);
+    double ahead = first_look(1.5 * reach, std::abs(approach()));
     const double remaining = motion_.duration() - here.t;
     const bool stuck = witness.gap <= 2.0 * here.error / witness.length;
     for (int attempt = 0; attempt < (stuck ? 200 : 3); ++attempt) {
@@ -186,8 +194,11 @@ class Advancement {
     return resolve_contact() ? false : undecided_until(motion_.duration());
   }
 
-  /// Speed at which the gap closes along the witness, m/s.
-  double approach() const { return -SeparationFunction(motion_, k_, turn_, witness_).rate(); }
+  /// Speed at which the gap closes along the witness, m/s. By bounds for this instant: those of the
+  /// steps ahead may be infinite, where a polynomial quaternion comes near zero.
+  double approach() const {
+    return -SeparationFunction(motion_, k_, motion_.bounds(k_.t, 0.0), witness_).rate();
+  }
 
   /// The start is within roundoff of touching, or overlaps. True if the shapes leave each other and
   /// the search goes on from a later time; false with the answer if not.
@@ -248,10 +259,9 @@ class Advancement {
     const Witness witness = witness_;
     const double duration = motion_.duration();
     const double rate = approach();
-    const double scale = motion_.speed_bound(k_, turn_, 0.0);
-    double ahead = rate > k_.rate_error ? 8.0 * k_.error / rate
-                   : scale > 0.0        ? 8.0 * k_.error / scale
-                                        : std::min(duration, 1.0);
+    const double scale = motion_.speed_bound(k_, motion_.bounds(0.0, 0.0), 0.0);
+    double ahead = scale > 0.0 ? first_look(8.0 * k_.error, rate > k_.rate_error ? rate : scale)
+                               : std::min(duration, 1.0);
     for (int attempt = 0; attempt < 200 && ahead > 0.0; ++attempt) {
       ahead = std::min(ahead, duration);
       look(ahead);

@@ -107,6 +107,9 @@ double angular_acceleration_bound(const Motion& motion, double s0, double s1, do
   if (motion.rotation != RotationKind::polynomial || motion.quaternion.degree() == 0) {
     return 0.0;
   }
+  if (!std::isfinite(w)) {  // |Q| may vanish
+    return w;
+  }
   const Polynomial<4> first = motion.quaternion.differentiated();
   const double rate = hull_bound(first, s0, s1, false);
   const double least = 1.998 * rate / w;  // the lower bound of |Q| that gave w, to be safe

@@ -162,7 +162,9 @@ void SeparationFunction::along_edges() {
       turn_.alpha_a + turn_.alpha_b > 0.0 ? turn_.w_a * turn_.w_b : k_.w_a.cross(k_.w_b).norm();
   fixed_bend_ = 0.5 * weights * (relative * relative + drift + turn_.alpha_a + turn_.alpha_b);
   // n is not normalised: the reach counts |n| times, which grows at `relative` at most.
-  slope_ -= motion_.reach() * relative;
+  if (motion_.reach() > 0.0) {  // `relative` may be infinite
+    slope_ -= motion_.reach() * relative;
+  }
 }
 
 double SeparationFunction::tangent() const {

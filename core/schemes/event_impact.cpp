@@ -19,6 +19,8 @@ constexpr int most_creeping = 200;
 /// Ever faster impacts are looked for from this many on, and hops below this part of the extent.
 constexpr std::int64_t many_impacts = 4096;
 constexpr double small_hop = 1e-3;
+/// Looks at a pair that go on by less than this part of its motions get nowhere.
+constexpr double least_progress = 1e-12;
 
 }  // namespace
 
@@ -120,7 +122,7 @@ void EventWorld::impact(BodyIndex a, BodyIndex b, Instant t, double patience, bo
   event.contact = contact_at(a, b, t, patience);
   const double approach = normal_velocity(event.contact, now_[a], now_[b]);
   if (!decided && approach >= 0.0 && patience > 0.0) {
-    return push(t + patience, Due::recheck, a, b);  // within tolerance, but not approaching
+    return look_again(a, b, t, patience);
   }
   event.before_a = now_[a];
   event.before_b = now_[b];
@@ -155,6 +157,20 @@ void EventWorld::impact(BodyIndex a, BodyIndex b, Instant t, double patience, bo
     }
   }
   land(a, b, event.contact, t);
+}
+
+/// A pair within tolerance that does not approach is asked about again where the answer ends.
+/// Answers that hardly get on, one after the other, would be asked for without end.
+void EventWorld::look_again(BodyIndex a, BodyIndex b, Instant t, double patience) {
+  const double window = std::min({actors_[a].motion.duration, actors_[b].motion.duration, epoch_});
+  int& creeping = actors_[model_.is_free(a) ? a : b].creeping;
+  creeping = patience < least_progress * window ? creeping + 1 : 0;
+  if (creeping > most_creeping) {
+    return stop(t, fmt::format("accumulation: whether {} touch is undecided again and again, and "
+                               "time does not go on",
+                               names(a, b)));
+  }
+  push(t + patience, Due::recheck, a, b);
 }
 
 /// How small a hop is taken for rest, m: with e < 1 the hops that would follow are summed up, so

@@ -49,7 +49,7 @@ class EventWorld {
     Instant contact_begins = Instant::never();  ///< when its bounces have died down
     std::vector<BodyIndex> partners;            ///< it can interact with, by name
     std::vector<BodyIndex> fields;              ///< it is in
-    int creeping = 0;                           ///< impacts in a row between which it hardly moved
+    int creeping = 0;                           ///< events in a row between which it hardly moved
     Instant last_impact = Instant::never();
     double last_speed = 0.0;       ///< after that impact, m/s
     std::int64_t impacts = 0;      ///< so far
@@ -115,6 +115,7 @@ class EventWorld {
   // Events
   void impact(BodyIndex a, BodyIndex b, Instant t, double patience, bool decided);
   [[nodiscard]] Contact contact_at(BodyIndex a, BodyIndex b, Instant t, double patience) const;
+  void look_again(BodyIndex a, BodyIndex b, Instant t, double patience);
   void land(BodyIndex a, BodyIndex b, const Contact& contact, Instant t);
   void settle(BodyIndex ball, const Support& support, double rebound, double pressing, double e,
               Instant t);

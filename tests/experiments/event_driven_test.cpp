@@ -1,5 +1,7 @@
+#include "ccd/shape_detector.hpp"
 #include "core/error.hpp"
 #include "core/scene.hpp"
+#include "experiments/registry.hpp"
 #include "experiments/simulation.hpp"
 #include "tests/catch.hpp"
 
@@ -270,4 +272,43 @@ TEST_CASE("both contacts of a fast bat within one frame are found", "[event-driv
   CHECK(of_kind(sim.trajectory, EventKind::impact).size() >= 1);
   CHECK(sim.result.state[1].pose.position.x() > 0.4);  // driven away, never passed
   check_ledger(sim.result);
+}
+
+namespace {
+
+/// Never decides, and never gets on: every answer is good for 1e-30 s.
+class Hesitant final : public ccd::ShapeDetector {
+ public:
+  [[nodiscard]] DetectorInfo info() const override {
+    return {.name = "hesitant", .locates = true, .proves = true, .summary = ""};
+  }
+
+ private:
+  [[nodiscard]] TimeOfImpact ordered_time_of_impact(const MovingShape& /*a*/,
+                                                    const MovingShape& /*b*/,
+                                                    const Window& /*window*/,
+                                                    double /*tolerance*/) const override {
+    return {.status = ToiStatus::undecided, .t_hi = 1e-30, .normal = -Vector3::UnitY()};
+  }
+};
+
+}  // namespace
+
+TEST_CASE("event-driven: a detector that never gets on is an accumulation, not a hang",
+          "[event-driven]") {
+  const Model model(parse_scene(
+      floor_body + ball("ball", "mass = 1.0\nposition = [0, 1, 0]\nvelocity = [0, 1, 0]"),
+      "test.toml"));
+  const Method method{.stepper = experiments::find_integrator("closed-form"),
+                      .detector = std::make_shared<Hesitant>(),
+                      .law = experiments::find_impact_law("newton"),
+                      .broad_phase = experiments::find_broad_phase(model.broad_phase()),
+                      .swept_bounds = experiments::swept_bounds()};
+  Trajectory trajectory;
+  const RunResult result =
+      experiments::find_scheme("event-driven")
+          ->run(model, method, {.frames = FixedFrames{1.0 / 60.0}}, trajectory);
+  CHECK(result.status == RunStatus::stopped);
+  CAPTURE(result.reason);
+  CHECK(result.reason.starts_with("accumulation: whether"));
 }
