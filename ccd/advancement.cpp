@@ -25,19 +25,9 @@ class Advancement {
         b_(b),
         window_(window),
         prove_(options.prove),
-        tolerance_(options.tolerance > 0.0 ? options.tolerance : default_tolerance(a, b, window)),
+        tolerance_(options.tolerance),
         kind_(pair_kind(a.shape, b.shape)),
-        motion_(a, b, window),
-        turn_(motion_.bounds(0.0, motion_.duration())) {
-    const double angle = motion_.total_turn();
-    // A radian takes some 40 evaluations where bodies nearly touch all along.
-    budget_ = 20000 + static_cast<int>(40.0 * std::min(angle, greatest_turn));
-    end_ = angle > greatest_turn * (1.0 + 1e-9) ? motion_.duration() * (greatest_turn / angle)
-                                                : motion_.duration();
-    if (std::isnan(end_)) {  // an infinite angle in an infinite time
-      end_ = greatest_turn / (turn_.w_a + turn_.w_b);
-    }
-  }
+        motion_(a, b, window) {}
 
   TimeOfImpact run() {
     const double clear = clear_of_balls(kind_, motion_);
@@ -48,6 +38,11 @@ class Advancement {
         return answer_;
       }
     }
+    if (!(tolerance_ > 0.0)) {
+      tolerance_ = default_tolerance(a_, b_, window_);
+    }
+    turn_ = motion_.bounds(clear, motion_.duration() - clear);
+    limit_work();
     look(clear);
     if (clear == 0.0 && witness_.gap <= k_.error && !leave_touch()) {
       return answer_;
@@ -58,6 +53,17 @@ class Advancement {
   }
 
  private:
+  void limit_work() {
+    const double angle = motion_.total_turn();
+    // A radian takes some 40 evaluations where bodies nearly touch all along.
+    budget_ = 20000 + static_cast<int>(40.0 * std::min(angle, greatest_turn));
+    end_ = angle > greatest_turn * (1.0 + 1e-9) ? motion_.duration() * (greatest_turn / angle)
+                                                : motion_.duration();
+    if (std::isnan(end_)) {  // an infinite angle in an infinite time
+      end_ = greatest_turn / (turn_.w_a + turn_.w_b);
+    }
+  }
+
   /// Where the shapes are at t, and what separates them.
   void look(double t) {
     motion_.evaluate(t, k_);
@@ -72,7 +78,8 @@ class Advancement {
       turn_.until = motion_.duration();
       return;
     }
-    if (k_.t + 16.0 * last_step_ < turn_.until || k_.t >= turn_.until) {
+    const bool long_piece = last_step_ > 0.0 && k_.t + 16.0 * last_step_ < turn_.until;
+    if (long_piece || k_.t >= turn_.until) {
       const double remaining = motion_.duration() - k_.t;
       const double piece = last_step_ > 0.0 ? std::min(remaining, 4.0 * last_step_) : remaining;
       turn_ = motion_.bounds(k_.t, piece);

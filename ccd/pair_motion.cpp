@@ -266,10 +266,12 @@ TurnBounds PairMotion::bounds(double t, double horizon) const {
     turn.w_b = motion_b_->angular_speed_bound(s0_b, s1_b);
     turn.alpha_b = angular_acceleration_bound(*motion_b_, s0_b, s1_b, turn.w_b);
   }
-  if (d_.degree() > 2) {
-    turn.bend = hull_bound(curvature_, t, turn.until, true);
-  }
+  turn.bend = bend(t, turn.until);
   return turn;
+}
+
+double PairMotion::bend(double t, double t1) const {
+  return d_.degree() > 2 ? hull_bound(curvature_, t, t1, true) : 0.0;
 }
 
 double PairMotion::total_turn() const {

@@ -48,8 +48,8 @@ class PairMotion {
   [[nodiscard]] bool turns_b() const { return turns_b_; }
   /// True if d is a parabola and both rates of turn are constant: bounds then hold for ever.
   [[nodiscard]] bool simple() const { return simple_; }
-  /// True if d is a parabola, whatever turns.
-  [[nodiscard]] bool parabolic() const { return d_.degree() <= 2; }
+  /// How far d is from a parabola on [t, t1]: see `TurnBounds::bend`, m/s^2.
+  [[nodiscard]] double bend(double t, double t1) const;
 
   void evaluate(double t, Kinematics& k) const;
   /// Only what does not depend on orientations: t, d, v, c; the errors are those of the distance of

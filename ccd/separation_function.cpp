@@ -400,24 +400,26 @@ Witness unit_in_world(const PairMotion& motion, const Kinematics& k, const Witne
 }
 
 double clear_of_balls(PairKind kind, const PairMotion& motion) {
-  if (!motion.parabolic() || kind == PairKind::sphere_plane || kind == PairKind::box_plane) {
+  const bool plane = kind == PairKind::sphere_plane || kind == PairKind::box_plane;
+  if (plane && motion.turns_b()) {
     return 0.0;
   }
   const double reach =
       (motion.reach() + motion.radius_a() + motion.radius_b()) * (1.0 + 8.0 * unit_roundoff);
   double t = 0.0;
   Kinematics k;
-  // Along the line of the centres the distance is a parabola. Three such lines come near enough to
-  // where the balls touch: the bodies inside them matter then.
-  for (int line = 0; line < 3; ++line) {
-    motion.evaluate_translation(t, k);
+  // Along the line of the centres the distance is a parabola, or not below one. Three such lines
+  // come near enough to where the balls touch: the bodies inside them matter then.
+  for (int line = 0; line < (plane ? 1 : 3); ++line) {
+    plane ? motion.evaluate(t, k) : motion.evaluate_translation(t, k);
     const double distance = k.d.norm();
-    const double value = distance - reach - k.error;
+    const Vector3 n = plane ? Vector3(-k.R_WB.col(1)) : Vector3(k.d / distance);
+    const double value = (plane ? n.dot(k.d) : distance) - reach - k.error;
     if (!(value > 0.05 * reach)) {
       break;
     }
-    const Vector3 n = k.d / distance;
-    const double step = first_root(value, n.dot(k.v) - k.rate_error, n.dot(k.c));
+    const double bend = motion.bend(t, motion.duration());
+    const double step = first_root(value, n.dot(k.v) - k.rate_error, n.dot(k.c) - bend);
     const double remaining = motion.duration() - t;
     if (step >= remaining) {
       return motion.duration();

@@ -101,8 +101,9 @@ class SeparationFunction {
 /// of nearly parallel edges its rounding is not divided by their sine.
 [[nodiscard]] Witness unit_in_world(const PairMotion& motion, const Kinematics& k,
                                     const Witness& witness);
-/// A time up to which the balls around two bodies on parabolas are proven apart, whatever turns; 0
-/// if they are not apart now, or if there are none. Costs no rotation.
+/// A time up to which the balls around two bodies (the ball and a plane that does not turn) are
+/// proven apart, whatever turns; 0 if they are not apart now, or if there are none. Costs no bound
+/// of a rotation.
 [[nodiscard]] double clear_of_balls(PairKind kind, const PairMotion& motion);
 /// The witness of greatest separation; shapes in the order sphere, box, half-space.
 [[nodiscard]] Witness find_witness(PairKind kind, const PairMotion& motion, const Kinematics& k);
