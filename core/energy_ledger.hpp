@@ -19,7 +19,8 @@ enum class EnergyLine : std::size_t {
   late_impact,       ///< restitution loss where it was handled minus where contact was
   position_correction,  ///< bodies pushed out of others, or nudged: work against gravity
   conveyor_and_hand,    ///< belts and hands
-  roundoff,             ///< the step as computed minus the step in double-double, on request
+  roundoff,             ///< steps as computed minus steps in double-double, impacts as computed
+                        ///< minus impacts in extended precision; on request
 };
 inline constexpr std::size_t energy_line_count = 8;
 [[nodiscard]] std::string_view to_string(EnergyLine line);

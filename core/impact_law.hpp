@@ -42,6 +42,14 @@ class ImpactLaw {
   [[nodiscard]] virtual LawInfo info() const = 0;
   /// Changes the velocities (and, for the thesis' nudge, positions) and net forces of both.
   virtual ImpactEnergy apply(const Contact& contact, ImpactBody a, ImpactBody b) const = 0;
+  /// What rounding did to the energy in `apply`, which took the bodies from the states `before` to
+  /// those that they have: kinetic energy as computed minus that of the same law in extended
+  /// precision, J. 0 where that is not available.
+  [[nodiscard]] virtual double roundoff(const Contact& /*contact*/, const ImpactBody& /*a*/,
+                                        const ImpactBody& /*b*/, const BodyState& /*before_a*/,
+                                        const BodyState& /*before_b*/) const {
+    return 0.0;
+  }
 };
 
 /// Relative normal velocity of b against a at the contact point, m/s; negative: approaching.

@@ -128,14 +128,18 @@ void EventWorld::impact(BodyIndex a, BodyIndex b, Instant t, double patience, bo
   event.before_b = now_[b];
   Vector3 unused_a = Vector3::Zero();  // solids that push (none does) would need fields
   Vector3 unused_b = Vector3::Zero();
-  const ImpactEnergy energy =
-      law_.apply(event.contact, {model_.body(a), model_.inertia(a), now_[a], unused_a},
-                 {model_.body(b), model_.inertia(b), now_[b], unused_b});
+  const ImpactBody body_a{model_.body(a), model_.inertia(a), now_[a], unused_a};
+  const ImpactBody body_b{model_.body(b), model_.inertia(b), now_[b], unused_b};
+  const ImpactEnergy energy = law_.apply(event.contact, body_a, body_b);
   event.after_a = now_[a];
   event.after_b = now_[b];
   ledger_.add(EnergyLine::restitution_loss, energy.restitution_loss);
   ledger_.add(EnergyLine::driven_work, energy.driven_work);
   ledger_.add(EnergyLine::conveyor_and_hand, energy.conveyor_and_hand);
+  if (options_.roundoff) {
+    ledger_.add(EnergyLine::roundoff,
+                law_.roundoff(event.contact, body_a, body_b, event.before_a, event.before_b));
+  }
   ++cost_.impacts;
   ++cost_.events;
   recorder_.event(event);

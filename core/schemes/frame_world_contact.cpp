@@ -25,13 +25,17 @@ void FrameWorld::collide(BodyIndex a, BodyIndex b, BodyState& state_a, BodyState
   }
   event.before_a = state_a;
   event.before_b = state_b;
-  const ImpactEnergy energy =
-      law_.apply(event.contact, {model_.body(a), model_.inertia(a), state_a, given_force_[a]},
-                 {model_.body(b), model_.inertia(b), state_b, given_force_[b]});
+  const ImpactBody body_a{model_.body(a), model_.inertia(a), state_a, given_force_[a]};
+  const ImpactBody body_b{model_.body(b), model_.inertia(b), state_b, given_force_[b]};
+  const ImpactEnergy energy = law_.apply(event.contact, body_a, body_b);
   any_given_ = true;
   event.after_a = state_a;
   event.after_b = state_b;
   book_impact(energy, a, b);
+  if (options_.roundoff) {
+    ledger_.add(EnergyLine::roundoff,
+                law_.roundoff(event.contact, body_a, body_b, event.before_a, event.before_b));
+  }
   for (const auto& [i, before, after] :
        {std::tuple{a, &event.before_a, &state_a}, std::tuple{b, &event.before_b, &state_b}}) {
     if (!model_.is_free(i)) {
