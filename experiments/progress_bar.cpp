@@ -23,7 +23,16 @@ ProgressBar::~ProgressBar() {
 
 void ProgressBar::advance() {
   const std::lock_guard lock(mutex_);
-  ++done_;
+  show(done_ + 1);
+}
+
+void ProgressBar::reach(std::size_t done) {
+  const std::lock_guard lock(mutex_);
+  show(done);
+}
+
+void ProgressBar::show(std::size_t done) {
+  done_ = done;
   const auto now = std::chrono::steady_clock::now();
   if (terminal_ && (now - drawn_ > std::chrono::milliseconds(100) || done_ == total_)) {
     drawn_ = now;

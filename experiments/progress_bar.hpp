@@ -18,8 +18,11 @@ class ProgressBar {
 
   /// One more is done.
   void advance();
+  /// So many are done.
+  void reach(std::size_t done);
 
  private:
+  void show(std::size_t done);
   void draw() const;
 
   std::string label_;

@@ -1,5 +1,6 @@
 #include "experiments/random/scene_trial.hpp"
 
+#include "core/archive.hpp"
 #include "core/error.hpp"
 #include "experiments/metrics/penetration.hpp"
 #include "experiments/simulation.hpp"
@@ -174,6 +175,15 @@ class Shrinker {
   int tries_ = 0;
 };
 
+Trial try_model(const Model& model, bool roundoff) {
+  Watch watch;
+  try {
+    return trial_of(simulate(model, {.roundoff = roundoff}, watch));
+  } catch (const BrokenPromise& broken) {
+    return {broken.fate, broken.what, broken.time, 0};
+  }
+}
+
 }  // namespace
 
 std::string_view to_string(Fate fate) {
@@ -196,14 +206,14 @@ std::string_view to_string(Fate fate) {
   return "";
 }
 
+void Trial::persist(Archive& archive) { archive(fate, reason, time, impacts); }
+
 Trial try_scene(const RandomScene& scene) {
   try {
     const Model model(parse_scene(scene.toml(), scene.name + ".toml"));
-    Watch watch;
-    return trial_of(
-        simulate(model, {.roundoff = true}, watch));  // so that it is no unexplained rest
-  } catch (const BrokenPromise& broken) {
-    return {broken.fate, broken.what, broken.time, 0};
+    const Trial trial = try_model(model, false);
+    // What steps and impacts lose to roundoff is replayed only where it shows.
+    return trial.fate == Fate::ledger ? try_model(model, true) : trial;
   } catch (const InputError& error) {
     return {Fate::invalid, error.what(), 0.0, 0};
   }

@@ -2,7 +2,14 @@
 
 #include "experiments/random/random_scene.hpp"
 
+#include <array>
 #include <string>
+
+namespace kairos {
+inline namespace core {
+class Archive;
+}
+}  // namespace kairos
 
 namespace kairos::experiments {
 
@@ -11,11 +18,13 @@ enum class Fate {
   right,       ///< ran to its end: finite, no overlap, its energy accounted for
   stopped,     ///< said why it cannot go on
   not_finite,  ///< NaN or infinity
-  overlap,     ///< solids inside each other in a drawn frame or at an impact
+  overlap,     ///< solids inside each other in a drawn frame
   ledger,      ///< energy that no line explains, beyond roundoff
   hang,        ///< more events than can be
   invalid,     ///< refused: the scene is wrong, which is the generator's mistake
 };
+inline constexpr std::array all_fates{Fate::right, Fate::not_finite, Fate::overlap, Fate::ledger,
+                                      Fate::hang,  Fate::invalid,    Fate::stopped};
 [[nodiscard]] std::string_view to_string(Fate fate);
 
 struct Trial {
@@ -26,6 +35,7 @@ struct Trial {
 
   /// A promise that was broken: not a stop that says why.
   [[nodiscard]] bool failed() const { return fate != Fate::right && fate != Fate::stopped; }
+  void persist(Archive& archive);
 };
 
 /// Runs the scene and watches.

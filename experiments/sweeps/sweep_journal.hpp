@@ -1,25 +1,20 @@
 #pragma once
 
+#include "experiments/output/record_journal.hpp"
 #include "experiments/sweeps/sweep_table.hpp"
 
 #include <cstddef>
 #include <map>
-#include <mutex>
 #include <string>
 
 namespace kairos::experiments {
 
-/// The rows of a sweep that are finished, in a file that grows by one record a row, so that a sweep
-/// that was killed goes on where it stopped. A record is whole (length and checksum) or not there;
-/// what a death cut short is run again. Thread-safe.
+/// The rows of a sweep that are finished, so that one that was killed goes on where it stopped.
+/// Adding is thread-safe.
 class SweepJournal {
  public:
-  /// `key`: what the rows depend on; a journal of another key is of another sweep and is begun
-  /// anew.
+  /// `key`: what the rows depend on, see `RecordJournal`.
   SweepJournal(std::string path, const std::string& key);
-  SweepJournal(const SweepJournal&) = delete;
-  SweepJournal& operator=(const SweepJournal&) = delete;
-  ~SweepJournal();
 
   /// Rows that an earlier run of this sweep finished, by index.
   [[nodiscard]] std::map<std::size_t, RunRecord>& found() { return found_; }
@@ -27,12 +22,7 @@ class SweepJournal {
   void add(std::size_t index, RunRecord& record);
 
  private:
-  void load(const std::string& key);
-  void append(const std::string& bytes);
-
-  std::string path_;
-  int descriptor_ = -1;
-  std::mutex mutex_;
+  RecordJournal journal_;
   std::map<std::size_t, RunRecord> found_;
 };
 

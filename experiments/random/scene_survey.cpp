@@ -1,0 +1,116 @@
+#include "experiments/random/scene_survey.hpp"
+
+#include "core/archive.hpp"
+#include "experiments/output/json_writer.hpp"
+#include "experiments/output/record_journal.hpp"
+#include "experiments/parallel_for.hpp"
+#include "experiments/version.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+#include <mutex>
+#include <optional>
+#include <set>
+
+namespace kairos::experiments {
+namespace {
+
+/// Scenes of a block: some tenths of a second.
+constexpr std::uint64_t block_size = 100;
+
+double thread_seconds() {
+  std::timespec now{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+Tally run_block(std::uint64_t seed, std::uint64_t first, std::uint64_t count) {
+  Tally tally;
+  const double start = thread_seconds();
+  for (std::uint64_t i = first; i < first + count; ++i) {
+    tally.add(i, try_scene(random_scene(seed, i)));
+  }
+  tally.seconds = thread_seconds() - start;
+  return tally;
+}
+
+std::string survey_key(const SceneSurvey& survey) {
+  return fmt::format("kairos random-scenes 1 seed {} first {} program {}", survey.seed,
+                     survey.first, program_identity());
+}
+
+}  // namespace
+
+Tally run_survey(const SceneSurvey& survey, const std::string& journal,
+                 const std::function<void(const Tally&)>& progress) {
+  std::optional<RecordJournal> finished;
+  std::set<std::uint64_t> done;
+  Tally total;
+  const std::uint64_t blocks = (survey.count + block_size - 1) / block_size;
+  if (!journal.empty()) {
+    finished.emplace(journal, survey_key(survey));
+    for (const std::string& record : finished->found()) {
+      Archive archive(record);
+      std::uint64_t block = 0;
+      Tally tally;
+      archive(block, tally);
+      // Only whole blocks are kept, so that a longer survey can use them.
+      if ((block + 1) * block_size <= survey.count && done.insert(block).second) {
+        total.add(tally);
+      }
+    }
+    progress(total);
+  }
+  std::mutex mutex;
+  parallel_for(blocks, survey.threads, [&](std::size_t index) {
+    std::uint64_t block = index;
+    if (done.contains(block)) {
+      return;
+    }
+    const std::uint64_t begin = block * block_size;
+    const std::uint64_t size = std::min(block_size, survey.count - begin);
+    Tally tally = run_block(survey.seed, survey.first + begin, size);
+    if (finished && size == block_size) {
+      Archive archive;
+      archive(block, tally);
+      finished->add(archive.bytes());
+    }
+    const std::lock_guard lock(mutex);
+    total.add(tally);
+    progress(total);
+  });
+  return total;
+}
+
+std::string survey_summary(const SceneSurvey& survey, const Tally& tally) {
+  const auto count = [](std::uint64_t n) { return static_cast<std::int64_t>(n); };
+  JsonWriter json;
+  json.text("version", version());
+  json.count("seed", count(survey.seed));
+  json.count("first", count(survey.first));
+  json.count("wanted", count(survey.count));
+  json.count("scenes", count(tally.scenes));
+  json.count("impacts", tally.impacts);
+  json.number("processor_seconds", tally.seconds);
+  json.open("fates");
+  for (const Fate fate : all_fates) {
+    json.count(to_string(fate), count(tally.of(fate)));
+  }
+  json.close();
+  json.open("stops");
+  for (const auto& [reason, n] : tally.stops) {
+    json.count(reason, count(n));
+  }
+  json.close();
+  json.open("failures");
+  for (const auto& [number, trial] : tally.failures) {
+    json.text(std::to_string(number),
+              fmt::format("{} at {} s: {}", to_string(trial.fate), trial.time, trial.reason));
+  }
+  json.close();
+  return json.finish();
+}
+
+}  // namespace kairos::experiments
