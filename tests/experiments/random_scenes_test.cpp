@@ -3,12 +3,14 @@
 
 #include "core/random.hpp"
 #include "experiments/parallel_for.hpp"
-#include "experiments/random/scene_trial.hpp"
+#include "experiments/random/scene_survey.hpp"
 #include "experiments/simulation.hpp"
 #include "tests/catch.hpp"
+#include "tests/experiments/program.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -146,6 +148,41 @@ TEST_CASE("a scene that fails is shrunk to a small one that fails in the same wa
   CHECK(small.duration <= scene.duration);
   // What is written is what was run.
   CHECK(random_scene(seed, index).toml() == scene.toml());
+}
+
+TEST_CASE("thirty thousand impacts in a closing gap leave no energy unexplained", "[random]") {
+  const Trial trial = try_scene(random_scene(seed, 1450));
+  CAPTURE(trial.reason);
+  CHECK(trial.fate == Fate::stopped);  // as an accumulation
+  CHECK(trial.impacts > 30000);
+}
+
+TEST_CASE("a survey that was killed goes on, and one that wants more scenes", "[random][sweep]") {
+  const tests::TemporaryFolder folder;
+  const std::string journal = folder.path("blocks");
+  const auto survey = [&](std::uint64_t count, const std::string& file) {
+    std::uint64_t at_first = count;
+    Tally tally = run_survey({.count = count, .seed = seed}, file, [&](const Tally& so_far) {
+      at_first = std::min(at_first, so_far.scenes);
+    });
+    tally.seconds = 0.0;
+    return std::pair(survey_summary({.count = count, .seed = seed}, tally), at_first);
+  };
+  const std::string whole = survey(450, "").first;
+  CHECK(survey(450, journal).first == whole);
+  const std::string full = tests::read_all(journal);
+
+  Random random(seed);
+  for (int kill = 0; kill < 4; ++kill) {  // a death leaves any part of the file
+    const auto size = static_cast<std::size_t>(random.below(full.size()));
+    std::filesystem::resize_file(folder.file("blocks", full), size);
+    CAPTURE(size, full.size());
+    CHECK(survey(450, journal).first == whole);
+    CHECK(tests::read_all(journal).size() == full.size());
+  }
+  const auto [more, kept] = survey(650, journal);
+  CHECK(kept == 400);  // the block of 50 was no whole one
+  CHECK(more == survey(650, "").first);
 }
 
 TEST_CASE("a run does not depend on where the origin is", "[random][invariance]") {
