@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <string>
 
 using namespace kairos;
@@ -18,7 +19,9 @@ namespace {
 
 /// The reader takes a path: one file, written again for every input.
 std::string write_input(const std::uint8_t* data, std::size_t size) {
-  static const std::string path = "/tmp/kairos-fuzz-track-" + std::to_string(::getpid()) + ".csv";
+  static const std::string path = (std::filesystem::temp_directory_path() /
+                                   ("kairos-fuzz-track-" + std::to_string(::getpid()) + ".csv"))
+                                      .string();
   std::FILE* file = std::fopen(path.c_str(), "wb");
   require(file != nullptr && std::fwrite(data, 1, size, file) == size, "cannot write the input");
   std::fclose(file);
