@@ -37,7 +37,7 @@ class Watch : public Recorder {
 
  private:
   static constexpr std::size_t most_kept = 16;
-  static constexpr std::int64_t most_calls = 3'000'000;
+  static constexpr std::int64_t most_calls = 30'000'000;
   void count() {
     if (++calls_ > most_calls) {
       throw Hung{};
