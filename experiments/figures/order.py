@@ -16,12 +16,14 @@ def draw(data, figures):
 
 
 def root_mean_square(rows):
-    """(h, error) of one method, ascending in h; without steps at which a run failed."""
+    """(h, error) of one method, ascending in h, over steps of nearly the same length; without those
+    at which a run failed."""
     result = []
-    for h in sorted({row["h"] for row in rows}):
-        of_step = [row for row in rows if row["h"] == h]
-        errors = [row["position_error"] for row in of_step]
+    for n in sorted({row["n"] for row in rows}, reverse=True):
+        alike = [row for row in rows if row["n"] == n]
+        errors = [row["position_error"] for row in alike]
         if all(error is not None for error in errors):
+            h = math.exp(sum(math.log(row["h"]) for row in alike) / len(alike))
             result.append((h, math.sqrt(sum(e * e for e in errors) / len(errors))))
     return result
 
@@ -67,7 +69,7 @@ def guide(panel, line, order):
 def all_integrators(data, figures):
     ways = [("unlocated", "not located"), ("linear", "located linearly"),
             ("dense", "on the dense output")]
-    figure, panels = plt.subplots(1, 3, figsize=(13.2, 4.8), sharey=True)
+    figure, panels = plt.subplots(1, 3, figsize=(13.2, 4.8), sharex=True, sharey=True)
     slopes = {}
     for panel, (sweep, title) in zip(panels, ways):
         rows = data.table(sweep, "runs")
