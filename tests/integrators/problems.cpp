@@ -8,12 +8,13 @@ namespace kairos::integrators::test {
 namespace {
 
 constexpr double attraction = 1.0;      // of the planet, m^3/s^2
-constexpr double top_weight = 0.35;     // of the heavy top, N m
+constexpr double top_weight = 0.2;      // of the heavy top, N m
 constexpr double stiffness = 4.0;       // of the spring, N/m
 constexpr double damping = 0.3;         // N s/m
 constexpr double shaking_rate = 1.7;    // rad/s
 constexpr double shaking_depth = 0.25;  // m
 constexpr double gravity = 9.8;         // m/s^2
+constexpr double short_time = 2.0;      // s
 
 const BodyInertia top_inertia{.mass = 2.0, .principal = {0.5, 0.8, 1.1}, .rotates = true};
 
@@ -132,21 +133,33 @@ BodyState body_state(const State13& y) {
           {{part(3), part(4), part(5)}, {part(10), part(11), part(12)}}};
 }
 
+/// The solution at the ends of `count` equal parts.
+template <typename Rate>
+std::vector<BodyState> solution_at(const Rate& rate, const Problem& problem, int count) {
+  constexpr int steps = 192;  // of the reference, at least, each of order 20
+  std::vector<BodyState> states;
+  State13 y = flat(problem.initial);
+  long double t = 0;
+  for (int k = 1; k <= count; ++k) {
+    const double next = problem.duration * k / count;
+    y = solve<13>(rate, t, y, next, (steps + count - 1) / count);
+    t = next;
+    states.push_back(body_state(y));
+  }
+  return states;
+}
+
 template <typename Rate>
 void solve_reference(const Rate& rate, Problem& problem) {
   constexpr int samples = 97;  // coprime to the halved steps: samples fall inside them
-  State13 y = flat(problem.initial);
-  long double t = 0;
   for (int k = 1; k <= samples; ++k) {
-    const double next = problem.duration * k / samples;
-    y = solve<13>(rate, t, y, next, 2);
-    t = next;
-    problem.times.push_back(next);
-    problem.solution.push_back(body_state(y));
+    problem.times.push_back(problem.duration * k / samples);
   }
+  problem.solution = solution_at(rate, problem, samples);
+  problem.quarters = solution_at(rate, problem, 4);
 }
 
-Problem make(std::string name, const Vector3& constant_force, bool rotates,
+Problem make(std::string name, double duration, const Vector3& constant_force, bool rotates,
              std::unique_ptr<const Force> force) {
   Problem problem;
   problem.name = std::move(name);
@@ -158,42 +171,49 @@ Problem make(std::string name, const Vector3& constant_force, bool rotates,
     problem.island.forces.push_back(force.get());
     problem.forces.push_back(std::move(force));
   }
-  problem.initial.pose.position = {0.7, 0.1, -0.2};
+  problem.initial.pose.position = {0.8, 0.1, -0.2};
   problem.initial.twist.linear = {-0.1, 1.2, 0.3};
   if (rotates) {
     problem.initial.pose.orientation = Quaternion(0.5, -0.5, 0.5, 0.5);
-    problem.initial.twist.angular = {0.4, 1.1, -0.7};
+    problem.initial.twist.angular = {-0.1, 2.1, 0.6};
   }
-  problem.duration = 2.0;
+  problem.duration = duration;
   return problem;
 }
 
 }  // namespace
 
+Problem make_kepler_top(double duration) {
+  Problem made = make("kepler top", duration, Vector3::Zero(), true, std::make_unique<Planet>());
+  solve_reference(kepler_top_rate, made);
+  return made;
+}
+
+Problem make_free_top(double duration) {
+  Problem made = make("free top", duration, {0.0, -gravity * top_inertia.mass, 0.0}, true, nullptr);
+  solve_reference(free_top_rate, made);
+  return made;
+}
+
+Problem make_shaken_spring(double duration) {
+  Problem made =
+      make("shaken spring", duration, Vector3::Zero(), false, std::make_unique<ShakenSpring>());
+  solve_reference(shaken_spring_rate, made);
+  return made;
+}
+
 const Problem& kepler_top() {
-  static const Problem problem = [] {
-    Problem made = make("kepler top", Vector3::Zero(), true, std::make_unique<Planet>());
-    solve_reference(kepler_top_rate, made);
-    return made;
-  }();
+  static const Problem problem = make_kepler_top(short_time);
   return problem;
 }
 
 const Problem& free_top() {
-  static const Problem problem = [] {
-    Problem made = make("free top", {0.0, -gravity * top_inertia.mass, 0.0}, true, nullptr);
-    solve_reference(free_top_rate, made);
-    return made;
-  }();
+  static const Problem problem = make_free_top(short_time);
   return problem;
 }
 
 const Problem& shaken_spring() {
-  static const Problem problem = [] {
-    Problem made = make("shaken spring", Vector3::Zero(), false, std::make_unique<ShakenSpring>());
-    solve_reference(shaken_spring_rate, made);
-    return made;
-  }();
+  static const Problem problem = make_shaken_spring(short_time);
   return problem;
 }
 
