@@ -148,14 +148,28 @@ class Advancement {
   }
 
   /// How far ahead a gap within roundoff is first looked at, s: the time to cover `length` at
-  /// `speed`, and never so little that 200 doublings would not reach the end of the window. Without
-  /// that a query that starts at 0, where an ulp is nothing, would answer before it got anywhere,
-  /// and whoever asks again from there would ask for ever.
+  /// `speed` and what bends the motions (a pair that hardly approaches may be through each other by
+  /// the time that its speed alone would take), and never so little that 200 doublings would not
+  /// reach the end of the window. Without that a query that starts at 0, where an ulp is nothing,
+  /// would answer before it got anywhere, and whoever asks again from there would ask for ever.
   double first_look(double length, double speed) const {
     const double remaining = motion_.duration() - k_.t;
     const double least = std::ldexp(std::isfinite(remaining) ? remaining : 1.0, -150);
-    const double crossing = length / speed;
+    const double twice = speed + std::sqrt(speed * speed + 4.0 * length * acceleration());
+    if (twice == 0.0) {
+      return std::min(remaining, 1.0);
+    }
+    const double crossing = 2.0 * length / twice;
     return std::max({8.0 * ulp(k_.t), least, std::isfinite(crossing) ? crossing : 0.0});
+  }
+
+  /// Half the acceleration of any point of b against any of a, now, and in the rest of the window
+  /// as far as the origins go, m/s^2.
+  double acceleration() const {
+    const TurnBounds turn = motion_.bounds(k_.t, 0.0);
+    return k_.c.norm() + motion_.bend(k_.t, motion_.duration()) +
+           0.5 * ((turn.w_a * turn.w_a + turn.alpha_a) * motion_.radius_a() +
+                  (turn.w_b * turn.w_b + turn.alpha_b) * motion_.radius_b());
   }
 
   /// Looks ahead from a gap within tolerance for a proven overlap. True if that settles the query.
@@ -267,8 +281,7 @@ class Advancement {
     const double duration = motion_.duration();
     const double rate = approach();
     const double scale = motion_.speed_bound(k_, motion_.bounds(0.0, 0.0), 0.0);
-    double ahead = scale > 0.0 ? first_look(8.0 * k_.error, rate > k_.rate_error ? rate : scale)
-                               : std::min(duration, 1.0);
+    double ahead = first_look(8.0 * k_.error, rate > k_.rate_error ? rate : scale);
     for (int attempt = 0; attempt < 200 && ahead > 0.0; ++attempt) {
       ahead = std::min(ahead, duration);
       look(ahead);

@@ -55,3 +55,25 @@ TEST_CASE("termination: a linear quaternion that nearly vanishes turns without a
   q.motion_b.quaternion[1] = Vector4(-2.0, 0.0, 0.01, 0.0);
   CHECK(kept(q, 20000).status == ToiStatus::impact);
 }
+
+TEST_CASE("touch: a pair that hardly approaches and is drawn together is not looked through",
+          "[ccd][termination]") {
+  const Vector3 pull(0.0, -10.0, 0.0);
+  const Shape ball = Sphere{0.05};
+  const std::pair<Shape, double> others[] = {{Sphere{0.05}, 0.1}, {box(0.05, 0.05, 0.05), 0.1}};
+  for (const auto& [under, height] : others) {
+    for (const double approach : {0.0, 1e-300, 1e-18, 1e-16, 1e-14, 1e-12, 1e-9, 1e-6}) {
+      for (const double duration : {0.01, 0.3, 1.0, 10.0}) {  // it is through in 0.2 s
+        const Query q{under, ball, moving(pose(zero), zero, zero, zero, duration),
+                      moving(pose({0, height, 0}), {0, -approach, 0}, zero, pull, duration),
+                      duration};
+        const TimeOfImpact toi = q.ask(*certified);
+        CAPTURE(under.index(), approach, duration, std::string(to_string(toi.status)), toi.t_hi);
+        CHECK(toi.status == ToiStatus::impact);
+        CHECK(toi.t_lo == 0.0);
+        // An overlap of some 1e-14 m, which rounding does not hide, takes sqrt(2e-15) s.
+        CHECK(toi.t_hi < 1e-6);
+      }
+    }
+  }
+}
