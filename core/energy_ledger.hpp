@@ -33,6 +33,12 @@ class CompensatedSum {
     correction_ += std::abs(sum_) >= std::abs(x) ? (sum_ - t) + x : (x - t) + sum_;
     sum_ = t;
   }
+  /// a b, its rounding included.
+  void add_product(double a, double b) {
+    const double product = a * b;
+    add(product);
+    correction_ += std::fma(a, b, -product);
+  }
   [[nodiscard]] double value() const { return sum_ + correction_; }
   void persist(Archive& archive);
 

@@ -199,7 +199,11 @@ double EnergyAccount::kinetic(std::span<const BodyState> bodies) const {
 double EnergyAccount::potential(Instant t, std::span<const BodyState> bodies) {
   CompensatedSum sum;
   for (const BodyIndex i : free_by_name_) {
-    sum.add(model_.gravity_potential(i, bodies[i].pose.position));
+    // Of bodies above and below the origin the potentials cancel; their rounding would not.
+    const Vector3& force = model_.gravity_force(i);
+    for (int axis = 0; axis < 3; ++axis) {
+      sum.add_product(-force[axis], bodies[i].pose.position[axis]);
+    }
   }
   for (const Island& island : model_.islands()) {
     if (!island.forces.empty()) {
