@@ -108,19 +108,27 @@ double EnergyAccount::surplus(const Leg& leg) {
   return surplus;
 }
 
+void EnergyAccount::act(std::span<const Force* const> forces, std::span<const Motion> motions,
+                        Instant t) {
+  along_.clear();
+  for (const Motion& motion : motions) {
+    const double s = t - motion.start;
+    along_.push_back({motion.pose(s), motion.twist(s)});
+  }
+  wrenches_.assign(motions.size(), Wrench{});
+  for (const Force* force : forces) {
+    force->add(t, along_, wrenches_);
+  }
+}
+
 /// Integral of power over the motions, for a force without a potential.
 double EnergyAccount::work_along(const Force& force, std::span<const Motion> motions, Instant start,
                                  double duration) {
+  const Force* const forces[] = {&force};
   double work = 0.0;
   for (const Node& node : nodes) {
     const Instant t = start + node.abscissa * duration;
-    along_.clear();
-    for (const Motion& motion : motions) {
-      const double s = t - motion.start;
-      along_.push_back({motion.pose(s), motion.twist(s)});
-    }
-    wrenches_.assign(motions.size(), Wrench{});
-    force.add(t, along_, wrenches_);
+    act(forces, motions, t);
     for (std::size_t k = 0; k < motions.size(); ++k) {
       // The path's own velocity, which a dense output may tell apart from `twist`.
       const Vector3 path_velocity = motions[k].position.derivative(t - motions[k].start);
@@ -128,6 +136,18 @@ double EnergyAccount::work_along(const Force& force, std::span<const Motion> mot
               (wrenches_[k].force.dot(path_velocity) +
                wrenches_[k].torque.dot(along_[k].twist.angular));
     }
+  }
+  return work;
+}
+
+double EnergyAccount::bearing_work(std::span<const Force* const> forces, const Motion& motion,
+                                   const Vector3& normal, Instant start, double duration) {
+  double work = 0.0;
+  for (const Node& node : nodes) {
+    const Instant t = start + node.abscissa * duration;
+    act(forces, {&motion, 1}, t);
+    work -= node.weight * duration * normal.dot(wrenches_[0].force) *
+            normal.dot(motion.position.derivative(t - motion.start));
   }
   return work;
 }

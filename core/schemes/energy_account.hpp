@@ -51,6 +51,11 @@ class EnergyAccount {
   /// `motions`: one per body of the island, covering [start, start + duration].
   void leg(const Leg& leg, std::span<const Motion> motions, Instant start, double duration);
 
+  /// What a surface does that takes up the `forces` on the ball it carries, along its unit
+  /// `normal`, J: minus the work of their normal component along the ball's motion.
+  [[nodiscard]] double bearing_work(std::span<const Force* const> forces, const Motion& motion,
+                                    const Vector3& normal, Instant start, double duration);
+
   /// A hand took the bodies of an island from one state to another (both by `BodyIndex`): what that
   /// did to their energy at time t.
   void carried(const Island& island, Instant t, std::span<const BodyState> from,
@@ -64,6 +69,8 @@ class EnergyAccount {
  private:
   /// Kinetic energy gained minus work of gravity and `other_force`, J; books the latter.
   double surplus(const Leg& leg);
+  /// What the forces do to the bodies on their motions at t, into `wrenches_` and `along_`.
+  void act(std::span<const Force* const> forces, std::span<const Motion> motions, Instant t);
   [[nodiscard]] double work_along(const Force& force, std::span<const Motion> motions,
                                   Instant start, double duration);
   [[nodiscard]] double kinetic(std::span<const BodyState> bodies) const;

@@ -296,13 +296,16 @@ void EventWorld::book(Flow& flow, Instant t) {
   double riding = 0.0;
   if (const auto& support = actors_[first].support;
       support && model_.mobility(support->surface) == Mobility::driven) {
-    // The normal force m a_s.n - F.n, integrated over the surface's displacement along n.
+    // The normal force m a_s.n - F.n, integrated over the surface's displacement along n; F what is
+    // constant and what depends on the state.
     const Vector3& n = support->normal;
     const double v0 = n.dot(booked_[first].twist.linear);
     const double v1 = n.dot(now_[first].twist.linear);
     const double rise = n.dot(now_[first].pose.position - booked_[first].pose.position);
-    riding =
-        0.5 * flow.island.inertia[0].mass * (v1 - v0) * (v1 + v0) - n.dot(net_force(first)) * rise;
+    riding = 0.5 * flow.island.inertia[0].mass * (v1 - v0) * (v1 + v0) -
+             n.dot(net_force(first)) * rise +
+             account_.bearing_work(model_.islands()[model_.island_of(first)].forces,
+                                   actors_[first].motion, n, flow.booked, duration);
   }
   const Leg leg{flow.island,   booked_,    now_,
                 field_forces_, flow.exact, options_.roundoff ? new_roundoff(flow, t) : 0.0,
