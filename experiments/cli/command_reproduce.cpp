@@ -3,6 +3,7 @@
 #include "experiments/cli/commands.hpp"
 #include "experiments/cli/experiment_options.hpp"
 #include "experiments/report/report.hpp"
+#include "experiments/report/report_entry.hpp"
 #include "experiments/sweeps/experiment_library.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
 
@@ -34,20 +35,9 @@ struct ReproduceCommand {
   void make(const ExperimentSpec& spec, const fs::path& folder) const;
 };
 
-/// Everything that can be made, in the order of the report.
-std::vector<std::string> all_names() {
-  std::vector<std::string> names;
-  for (const ThesisFigure& figure : thesis_figures()) {
-    names.emplace_back(figure.name);
-  }
-  const std::vector<std::string> experiments = shipped_experiments();
-  names.insert(names.end(), experiments.begin(), experiments.end());
-  return names;
-}
-
 /// Each name once, as the report names it; figures may be written fig1 or 1.
 std::vector<std::string> ReproduceCommand::wanted() const {
-  const std::vector<std::string> all = all_names();
+  const std::vector<std::string> all = reproducible_names();
   if (only.empty()) {
     return all;
   }
@@ -127,7 +117,7 @@ void add_reproduce_command(CLI::App& app) {
       "reproduce", "Make the thesis' figures, run all experiments, write the report");
   reproduce
       ->add_option("--only", command->only,
-                   fmt::format("these only: {}", fmt::join(all_names(), ", ")))
+                   fmt::format("these only: {}", fmt::join(reproducible_names(), ", ")))
       ->type_name("NAME");
   reproduce->add_option("--out", command->out, "the report goes to DIR/report/index.html")
       ->type_name("DIR")

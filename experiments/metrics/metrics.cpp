@@ -247,7 +247,14 @@ std::string_view metric_unit(std::string_view name) {
   return entry == nullptr ? std::string_view{} : entry->info.unit;
 }
 
-MetricRecorder::MetricRecorder(MetricRequest request) : request_(std::move(request)) {}
+MetricRecorder::MetricRecorder(MetricRequest request) : request_(std::move(request)) {
+  for (const std::string& metric : request_.metrics) {
+    if (!is_metric(metric)) {
+      throw InputError("", 0, "metrics",
+                       fmt::format("there is no metric '{}'; allowed: {}", metric, metric_names()));
+    }
+  }
+}
 MetricRecorder::~MetricRecorder() = default;
 
 bool MetricRecorder::wants_motions() const {
@@ -298,16 +305,19 @@ void MetricRecorder::event(const Event& event) {
 
 std::optional<double> MetricRecorder::value(std::string_view metric,
                                             const RunResult& result) const {
-  const Entry* entry = find_entry(metric);
-  if (entry == nullptr || watches_ == nullptr || watches_->subject >= result.state.size()) {
+  const auto& requested = request_.metrics;
+  if (std::find(requested.begin(), requested.end(), metric) == requested.end()) {
+    throw InputError("", 0, "metrics", fmt::format("'{}' was not requested", metric));
+  }
+  if (watches_ == nullptr || watches_->subject >= result.state.size()) {
     return std::nullopt;
   }
   const Watches& w = *watches_;
   const auto exact = w.exact ? w.exact->state(w.subject, result.end) : std::nullopt;
-  const double x =
-      entry->value({result, w.frames ? &w.frames->metrics() : nullptr,
-                    w.between ? &*w.between : nullptr, w.crossing ? &*w.crossing : nullptr, w.apex,
-                    w.impacts, result.state[w.subject], exact ? &*exact : nullptr});
+  const double x = find_entry(metric)->value(
+      {result, w.frames ? &w.frames->metrics() : nullptr, w.between ? &*w.between : nullptr,
+       w.crossing ? &*w.crossing : nullptr, w.apex, w.impacts, result.state[w.subject],
+       exact ? &*exact : nullptr});
   return std::isfinite(x) ? std::optional(x) : std::nullopt;
 }
 

@@ -26,7 +26,7 @@ struct MetricInfo {
 /// The body of that name, the first free one if it is empty. Throws `InputError`.
 [[nodiscard]] BodyIndex subject_of(const Model& model, const std::string& name);
 
-/// Which metrics are wanted: only what they need is watched.
+/// Which metrics are wanted: only what they need is watched. Unknown names throw `InputError`.
 struct MetricRequest {
   std::vector<std::string> metrics;
   std::string subject;  ///< body that is followed; empty: the first free one
@@ -45,8 +45,8 @@ class MetricRecorder : public Recorder {
   void motion(BodyIndex body, const Motion& motion) override;
   void event(const Event& event) override;
 
-  /// The metric, or nothing where it has no meaning in this run (no impact: no time of impact) or
-  /// is not finite.
+  /// A metric of the request, or nothing where it has no meaning in this run (no impact: no time
+  /// of impact) or is not finite. Throws `InputError` if it was not requested.
   [[nodiscard]] std::optional<double> value(std::string_view metric, const RunResult& result) const;
 
  private:

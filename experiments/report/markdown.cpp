@@ -26,19 +26,19 @@ std::string_view enclosed(std::string_view text, std::size_t& at, std::string_vi
   return text.substr(begin, end - begin);
 }
 
-std::string resolved(std::string_view inside, const Placeholder& placeholder) {
+std::string resolved(std::string_view inside, const Substitution& substitution) {
   const std::size_t colon = inside.find(':');
-  return placeholder(inside.substr(0, colon),
-                     colon == std::string_view::npos ? "" : inside.substr(colon + 1));
+  return substitution(inside.substr(0, colon),
+                      colon == std::string_view::npos ? "" : inside.substr(colon + 1));
 }
 
-std::string citations(std::string_view keys, const Placeholder& placeholder) {
+std::string citations(std::string_view keys, const Substitution& substitution) {
   std::string out = "[";
   for (std::size_t at = 0; at < keys.size();) {
     const std::size_t end = std::min(keys.find(';', at), keys.size());
     std::string_view key = keys.substr(at, end - at);
     key.remove_prefix(std::min(key.find_first_not_of(" @"), key.size()));
-    out += (at == 0 ? "" : ", ") + placeholder("cite", key);
+    out += (at == 0 ? "" : ", ") + substitution("cite", key);
     at = end + 1;
   }
   return out + "]";
@@ -91,8 +91,8 @@ std::size_t item_text(std::string_view line) {
 /// Collects lines into blocks and writes each when it is complete.
 class BlockWriter {
  public:
-  BlockWriter(std::string prefix, const Placeholder& placeholder)
-      : prefix_(std::move(prefix)), placeholder_(placeholder) {}
+  BlockWriter(std::string prefix, const Substitution& substitution)
+      : prefix_(std::move(prefix)), substitution_(substitution) {}
 
   void line(std::string_view line) {
     if (line.starts_with("```")) {
@@ -131,7 +131,7 @@ class BlockWriter {
     page_.headings.push_back({static_cast<int>(level), text, prefix_ + slug(text)});
     if (level > 1) {
       page_.html += fmt::format("<h{0} id=\"{1}\">{2}</h{0}>\n", level + 1,
-                                page_.headings.back().id, inline_html(text, placeholder_));
+                                page_.headings.back().id, inline_html(text, substitution_));
     }
   }
 
@@ -157,16 +157,16 @@ class BlockWriter {
     std::size_t at = 0;
     const std::string_view inside = enclosed(block_, at, "{{", "}}");
     if (!inside.empty() && at == block_.size() && list_.empty()) {
-      page_.html += resolved(inside, placeholder_);
+      page_.html += resolved(inside, substitution_);
     } else {
       const char* tag = list_.empty() ? "p" : "li";
-      page_.html += fmt::format("<{0}>{1}</{0}>\n", tag, inline_html(block_, placeholder_));
+      page_.html += fmt::format("<{0}>{1}</{0}>\n", tag, inline_html(block_, substitution_));
     }
     block_.clear();
   }
 
   std::string prefix_;
-  const Placeholder& placeholder_;
+  const Substitution& substitution_;
   MarkdownPage page_;
   std::string block_;  ///< lines so far of a paragraph or an item
   std::string list_;   ///< the kind that is open; empty: none
@@ -175,21 +175,21 @@ class BlockWriter {
 
 }  // namespace
 
-std::string inline_html(std::string_view text, const Placeholder& placeholder) {
+std::string inline_html(std::string_view text, const Substitution& substitution) {
   std::string out;
   for (std::size_t at = 0; at < text.size();) {
     if (const auto code = enclosed(text, at, "`", "`"); !code.empty()) {
       out += fmt::format("<code>{}</code>", html(code));
     } else if (const auto strong = enclosed(text, at, "**", "**"); !strong.empty()) {
-      out += fmt::format("<strong>{}</strong>", inline_html(strong, placeholder));
+      out += fmt::format("<strong>{}</strong>", inline_html(strong, substitution));
     } else if (const auto soft = enclosed(text, at, "*", "*"); !soft.empty()) {
-      out += fmt::format("<em>{}</em>", inline_html(soft, placeholder));
-    } else if (!placeholder) {
+      out += fmt::format("<em>{}</em>", inline_html(soft, substitution));
+    } else if (!substitution) {
       out += html(text.substr(at++, 1));
     } else if (const auto inside = enclosed(text, at, "{{", "}}"); !inside.empty()) {
-      out += resolved(inside, placeholder);
+      out += resolved(inside, substitution);
     } else if (const auto keys = enclosed(text, at, "[@", "]"); !keys.empty()) {
-      out += citations(keys, placeholder);
+      out += citations(keys, substitution);
     } else if (const std::string link = local_link(text, at); !link.empty()) {
       out += link;
     } else {
@@ -200,8 +200,8 @@ std::string inline_html(std::string_view text, const Placeholder& placeholder) {
 }
 
 MarkdownPage markdown_html(std::string_view text, const std::string& id_prefix,
-                           const Placeholder& placeholder) {
-  BlockWriter writer(id_prefix, placeholder);
+                           const Substitution& substitution) {
+  BlockWriter writer(id_prefix, substitution);
   for (std::size_t at = 0; at < text.size();) {
     writer.line(next_line(text, at));
   }

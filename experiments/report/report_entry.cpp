@@ -23,17 +23,6 @@ std::vector<std::pair<std::string, std::string>> read_pairs(const fs::path& path
   return out;
 }
 
-/// Every name that the report knows, in its order.
-std::vector<std::string> known_names() {
-  std::vector<std::string> names;
-  for (const ThesisFigure& figure : thesis_figures()) {
-    names.emplace_back(figure.name);
-  }
-  const std::vector<std::string> experiments = shipped_experiments();
-  names.insert(names.end(), experiments.begin(), experiments.end());
-  return names;
-}
-
 }  // namespace
 
 std::string ReportEntry::entry(const std::string& key) const {
@@ -83,6 +72,16 @@ std::vector<std::string> ReportEntry::data_files() const {
   return names;
 }
 
+std::vector<std::string> reproducible_names() {
+  std::vector<std::string> names;
+  for (const ThesisFigure& figure : thesis_figures()) {
+    names.emplace_back(figure.name);
+  }
+  const std::vector<std::string> experiments = shipped_experiments();
+  names.insert(names.end(), experiments.begin(), experiments.end());
+  return names;
+}
+
 std::vector<ReportEntry> read_report_entries(const std::string& folder) {
   std::vector<ReportEntry> entries;
   std::error_code error;
@@ -95,7 +94,7 @@ std::vector<ReportEntry> read_report_entries(const std::string& folder) {
                          read_pairs(below.path() / "figures.csv"), of_thesis});
     }
   }
-  const std::vector<std::string> order = known_names();
+  const std::vector<std::string> order = reproducible_names();
   const auto rank = [&order](const ReportEntry& entry) {
     return std::find(order.begin(), order.end(), entry.name) - order.begin();
   };

@@ -23,6 +23,10 @@ struct ReportEntry {
   [[nodiscard]] std::vector<std::string> data_files() const;
 };
 
+/// Names of all that can be made: the thesis' figures, then the experiments, as the report orders
+/// them.
+[[nodiscard]] std::vector<std::string> reproducible_names();
+
 /// All that was made in a folder: the thesis' figures in its order, the experiments in the order
 /// of the library, a person's own after them.
 [[nodiscard]] std::vector<ReportEntry> read_report_entries(const std::string& folder);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "experiments/sweeps/expression.hpp"
+#include "experiments/sweeps/spec_section.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -9,10 +10,6 @@
 #include <vector>
 
 namespace kairos::experiments {
-
-/// How much work: `quick` for a first look (minutes for all experiments), `full` for the paper.
-enum class Size { quick, full };
-[[nodiscard]] std::string_view to_string(Size size);
 
 /// One value on an axis.
 struct AxisValue {

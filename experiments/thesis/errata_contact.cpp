@@ -1,8 +1,6 @@
-#include "core/impact_law.hpp"
-#include "core/random.hpp"
-#include "experiments/registry.hpp"
 #include "experiments/thesis/errata.hpp"
 #include "experiments/thesis/errata_runs.hpp"
+#include "experiments/thesis/phase_runs.hpp"
 
 #include <fmt/format.h>
 
@@ -12,25 +10,6 @@
 
 namespace kairos::experiments::thesis {
 namespace {
-
-/// Start of the k-th of n drops whose last frame before the bounce falls everywhere, with equal
-/// weight: after m frames the thesis' ball has fallen G h^2 (m-1)(m-2)/2; here m = 59 to 60.
-Scene drop_at_phase(int k, int n) {
-  const double height = 0.5 + G * frame * frame * 58.0 * (57.0 / 2.0 + (k + 0.5) / n);
-  return shipped("bounce", {{"body.ball.position", fmt::format("[0, {}, 0]", height)}});
-}
-
-/// Fraction of drops in which a ball that was reflected is reflected again, back inwards.
-double turned_fraction(double jitter, int n) {
-  RunChoice choice = thesis_choice(frame, 1.25);
-  double turned = 0.0;
-  for (int k = 0; k < n; ++k) {
-    choice.frames = JitteredFrames{frame, jitter, 0.0, 10.0, seed + static_cast<std::uint64_t>(k)};
-    const Measured run = measured_run(drop_at_phase(k, n), choice, "separating_impacts");
-    turned += std::min(1.0, run.value);
-  }
-  return turned / n;
-}
 
 /// E[max(0, 1 - h2/h1)] for two frame times uniform in 1 +- j, by the midpoint rule.
 double expected_turns(double jitter) {
@@ -44,64 +23,6 @@ double expected_turns(double jitter) {
     }
   }
   return sum / (n * n);
-}
-
-/// The thesis' reflection with restitution: no approach test, the normal speed scaled by e.
-class LossyReflection : public ImpactLaw {
- public:
-  explicit LossyReflection(double e) : e_(e) {}
-  [[nodiscard]] LawInfo info() const override { return {"lossy-reflection", false, ""}; }
-  ImpactEnergy apply(const Contact& /*contact*/, ImpactBody a, ImpactBody b) const override {
-    (a.inertia.mass > 0.0 ? a : b).state.twist.linear.y() *= -e_;
-    return {};
-  }
-
- private:
-  double e_;
-};
-
-double turned_with_restitution(double e, int n) {
-  double turned = 0.0;
-  for (int k = 0; k < n; ++k) {
-    const Model model(drop_at_phase(k, n));
-    const Method method{.stepper = find_integrator("thesis-euler"),
-                        .detector = find_detector("sat"),
-                        .law = std::make_shared<LossyReflection>(e),
-                        .broad_phase = find_broad_phase(model.broad_phase()),
-                        .swept_bounds = swept_bounds()};
-    MetricRecorder recorder({{"separating_impacts"}, ""});
-    SchemeOptions options;
-    options.frames = FixedFrames{frame};
-    options.duration = 1.25;
-    const RunResult result = find_scheme("original")->run(model, method, options, recorder);
-    turned += std::min(1.0, recorder.value("separating_impacts", result).value_or(0.0));
-  }
-  return turned / n;
-}
-
-constexpr double wall = 0.02;    // m, of scene bullet
-constexpr double radius = 0.02;  // m
-
-/// Fraction of stratified phases of the frame at which the bullet goes through the wall; exact
-/// within 1/n for any interval of phases.
-double tunnelled_fraction(const MethodChoice& method, bool equal_substeps, double speed, int n) {
-  RunChoice choice;
-  choice.method = method;
-  choice.equal_substeps = equal_substeps;
-  choice.threshold = 0.5 * (wall + 2.0 * radius);
-  choice.frames = FixedFrames{frame};
-  choice.duration = 2.0 / speed + 4.0 * frame;
-  const double shift = Random(seed, static_cast<std::uint64_t>(speed)).uniform();
-  double count = 0.0;
-  for (int k = 0; k < n; ++k) {
-    const double phase = (k + shift) / n;
-    const Scene scene = shipped(
-        "bullet",
-        {{"body.bullet.velocity", fmt::format("[{}, 0, 0]", speed)},
-         {"body.bullet.position", fmt::format("[{}, 0, 0]", -1.0 - phase * speed * frame)}});
-    count += measured_run(scene, choice, "tunnelled").value;
-  }
-  return count / n;
 }
 
 /// Two balls of equal mass, the second hit with the line of centres at `theta` off the velocity of
@@ -143,7 +64,7 @@ std::vector<Check> jiggle(Size size) {
   for (const double e : {0.9, 0.5}) {
     // Gravity between two frames changes the speed by G h / v = 1.7 %.
     checks.push_back({fmt::format("fraction turned back in, restitution {:g}", e), "", 1.0 - e,
-                      turned_with_restitution(e, n / 4), Agreement::equal, 0.02,
+                      turned_fraction_lossy(e, n / 4), Agreement::equal, 0.02,
                       "physical: gravity in one frame"});
   }
   return checks;
@@ -154,29 +75,26 @@ std::vector<Check> tunnelling(Size size) {
   std::vector<Check> checks;
   for (const double speed : {3.0, 6.0, 20.0, 200.0}) {
     checks.push_back({fmt::format("fraction through the wall at {:g} m/s", speed), "",
-                      std::max(0.0, 1.0 - (wall + 2.0 * radius) / (speed * frame)),
-                      tunnelled_fraction(MethodChoice::thesis(), false, speed, n), Agreement::equal,
+                      std::max(0.0, 1.0 - bullet_length / (speed * frame)),
+                      tunnelled_fraction(substep_choice("original"), speed, n), Agreement::equal,
                       1.0 / n, "one phase"});
   }
-  checks.push_back({"the same at 200 m/s, event-driven", "", 0.0,
-                    tunnelled_fraction({}, false, 200.0, n), Agreement::equal, 0.0, "exact"});
+  checks.push_back({"the same at 200 m/s, event-driven", "", 0.0, tunnelled_fraction({}, 200.0, n),
+                    Agreement::equal, 0.0, "exact"});
   return checks;
 }
 
 std::vector<Check> literal_substeps(Size size) {
   const int n = size == Size::full ? 2048 : 512;
-  MethodChoice literal = MethodChoice::thesis();
-  literal.scheme = "substepped";
-  MethodChoice bisected = literal;
-  bisected.scheme = "bisected";
-  bisected.detector = "bisection";
   return {{"fraction through the wall at 20 m/s, fig. 15 literally", "", 0.09,
-           tunnelled_fraction(literal, false, 20.0, n), Agreement::equal, 0.02,
+           tunnelled_fraction(substep_choice("substepped"), 20.0, n), Agreement::equal, 0.02,
            "the prediction's own precision"},
-          {"the same with equal substeps", "", 0.0, tunnelled_fraction(literal, true, 20.0, n / 8),
-           Agreement::equal, 0.0, "exact"},
-          {"the same with bisection", "", 0.0, tunnelled_fraction(bisected, false, 20.0, n / 8),
-           Agreement::equal, 0.0, "exact"}};
+          {"the same with equal substeps", "", 0.0,
+           tunnelled_fraction(substep_choice("substepped", true), 20.0, n / 8), Agreement::equal,
+           0.0, "exact"},
+          {"the same with bisection", "", 0.0,
+           tunnelled_fraction(substep_choice("bisected"), 20.0, n / 8), Agreement::equal, 0.0,
+           "exact"}};
 }
 
 std::vector<Check> swallowing_conveyor(Size) {

@@ -30,7 +30,7 @@ inline constexpr std::uint64_t seed = 20260107;
   return choice;
 }
 
-/// A run and one of its metrics.
+/// A run and one of its metrics, which must have a meaning in it.
 struct Measured {
   RunResult result;
   double value = 0.0;
@@ -41,7 +41,7 @@ struct Measured {
   const Model model(scene);
   MetricRecorder recorder({{metric}, ""});
   Measured measured{simulate(model, choice, recorder), 0.0};
-  measured.value = recorder.value(metric, measured.result).value_or(0.0);
+  measured.value = recorder.value(metric, measured.result).value();
   return measured;
 }
 

@@ -5,6 +5,7 @@
 #include "core/error.hpp"
 #include "core/scene.hpp"
 #include "tests/catch.hpp"
+#include "tests/locations.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -301,7 +302,7 @@ TEST_CASE("bad scenes: drives", "[scene][input]") {
 }
 
 TEST_CASE("bad scenes: every prefix of a scene is read or refused, never more", "[scene][input]") {
-  const std::string path = std::string(KAIROS_SOURCE_DIR) + "/scenes/bat.toml";
+  const std::string path = tests::source_path("scenes/bat.toml");
   const std::string text = read_text_file(path);
   std::size_t refused = 0;
   for (std::size_t n = 0; n < text.size(); ++n) {

@@ -1,6 +1,7 @@
 #include "core/entity.hpp"
 #include "core/model.hpp"
 #include "tests/catch.hpp"
+#include "tests/locations.hpp"
 
 using namespace kairos;
 
@@ -24,7 +25,7 @@ TEST_CASE("balloon: a ball whose gravity is scaled and reversed", "[entity]") {
 }
 
 TEST_CASE("balloon: rises in its scene", "[entity]") {
-  const Model model(read_scene(std::string(KAIROS_SOURCE_DIR) + "/scenes/balloon.toml"));
+  const Model model(read_scene(tests::source_path("scenes/balloon.toml")));
   CHECK(model.gravity_force(1).y() == Approx(0.01 * 0.2 * 9.8).epsilon(1e-15));
   CHECK(model.closed_form(0));
 }

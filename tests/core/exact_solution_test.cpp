@@ -4,6 +4,7 @@
 
 #include "core/error.hpp"
 #include "tests/catch.hpp"
+#include "tests/locations.hpp"
 
 #include <cmath>
 
@@ -11,7 +12,7 @@ using namespace kairos;
 
 namespace {
 
-const std::string scenes = std::string(KAIROS_SOURCE_DIR) + "/scenes/";
+const std::string scenes = tests::source_path("scenes/");
 
 /// A ball of radius 0.1 dropped from a gap H.
 std::unique_ptr<const ExactMotion> drop(const std::string& name, const std::string& H,

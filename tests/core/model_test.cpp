@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/island_force.hpp"
 #include "tests/catch.hpp"
+#include "tests/locations.hpp"
 
 #include <algorithm>
 
@@ -10,7 +11,7 @@ using namespace kairos;
 
 namespace {
 
-const std::string scenes = std::string(KAIROS_SOURCE_DIR) + "/scenes/";
+const std::string scenes = tests::source_path("scenes/");
 
 bool decided(const Model& model, const std::string& topic, const std::string& part) {
   const auto& all = model.decisions();

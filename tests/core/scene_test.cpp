@@ -9,6 +9,7 @@
 #include "core/nearest_name.hpp"
 #include "core/scene_keys.hpp"
 #include "tests/catch.hpp"
+#include "tests/locations.hpp"
 
 #include <filesystem>
 
@@ -16,7 +17,7 @@ using namespace kairos;
 
 namespace {
 
-const std::string scenes = std::string(KAIROS_SOURCE_DIR) + "/scenes/";
+const std::string scenes = tests::source_path("scenes/");
 
 /// The lines of scenes/README.md that are rows of a table.
 bool documented(const std::string& readme, std::string_view first, std::string_view second = {}) {

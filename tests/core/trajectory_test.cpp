@@ -1,11 +1,12 @@
 #include "core/trajectory.hpp"
 
 #include "tests/catch.hpp"
+#include "tests/locations.hpp"
 
 using namespace kairos;
 
 TEST_CASE("trajectory: samples the motion that is valid at a time", "[trajectory]") {
-  const Model model(read_scene(std::string(KAIROS_SOURCE_DIR) + "/scenes/bounce.toml"));
+  const Model model(read_scene(tests::source_path("scenes/bounce.toml")));
   Trajectory trajectory;
   trajectory.begin(model);
   const Vector3 g(0, -10, 0);
@@ -22,7 +23,7 @@ TEST_CASE("trajectory: samples the motion that is valid at a time", "[trajectory
 }
 
 TEST_CASE("trajectory: keeps frames and starts again", "[trajectory]") {
-  const Model model(read_scene(std::string(KAIROS_SOURCE_DIR) + "/scenes/bounce.toml"));
+  const Model model(read_scene(tests::source_path("scenes/bounce.toml")));
   const State state = model.initial_state();
   const EnergyLedger ledger;
   Trajectory trajectory;

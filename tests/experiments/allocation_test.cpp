@@ -2,6 +2,7 @@
 #include "experiments/simulation.hpp"
 #include "tests/allocations.hpp"
 #include "tests/catch.hpp"
+#include "tests/locations.hpp"
 
 #include <string>
 
@@ -21,7 +22,7 @@ std::size_t allocations_of(const Model& model, experiments::RunChoice choice, do
 }
 
 void check_no_allocation(const std::string& scheme, const std::string& integrator) {
-  const Model model(read_scene(std::string(KAIROS_SOURCE_DIR) + "/scenes/bounce.toml"));
+  const Model model(read_scene(tests::source_path("scenes/bounce.toml")));
   experiments::RunChoice choice;
   choice.method = {scheme, integrator, "certified", "newton"};
   CAPTURE(scheme, integrator);

@@ -10,6 +10,7 @@
 #include "experiments/thesis/literal_bounce.hpp"
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
+#include "tests/locations.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -24,7 +25,7 @@ namespace {
 std::string all_tests() {
   std::string text;
   for (const auto& entry :
-       std::filesystem::recursive_directory_iterator(std::string(KAIROS_SOURCE_DIR) + "/tests")) {
+       std::filesystem::recursive_directory_iterator(tests::source_path("tests"))) {
     if (entry.path().extension() == ".cpp") {
       text += tests::read_all(entry.path().string());
     }

@@ -1,12 +1,8 @@
 // What the reading of the thesis predicts, each prediction as a test (9 to 11 are about boxes and
 // counting, and are tested where boxes are). Runs are the quick sizes of the experiments.
 
-#include "core/impact_law.hpp"
-#include "core/random.hpp"
-#include "experiments/metrics/metrics.hpp"
-#include "experiments/registry.hpp"
-#include "experiments/scene_library.hpp"
-#include "experiments/simulation.hpp"
+#include "experiments/thesis/errata_runs.hpp"
+#include "experiments/thesis/phase_runs.hpp"
 #include "tests/catch.hpp"
 
 #include <fmt/format.h>
@@ -17,91 +13,14 @@
 
 using namespace kairos;
 using namespace kairos::experiments;
-
-namespace {
-
-constexpr double G = 9.8;
-constexpr double epsilon = 0x1p-52;
-
-Scene scene(const std::string& name, const std::vector<Override>& overrides = {}) {
-  return read_scene(find_scene(name), overrides);
-}
-
-RunChoice thesis(double frame, double duration) {
-  RunChoice choice;
-  choice.method = MethodChoice::thesis();
-  choice.frames = FixedFrames{frame};
-  choice.duration = duration;
-  return choice;
-}
-
-/// A run and one of its metrics.
-struct Measured {
-  RunResult result;
-  double value = 0.0;
-};
-
-Measured measure(const Scene& world, const RunChoice& choice, const std::string& metric) {
-  const Model model(world);
-  MetricRecorder recorder({{metric}, ""});
-  Measured measured{simulate(model, choice, recorder), 0.0};
-  measured.value = recorder.value(metric, measured.result).value();
-  return measured;
-}
-
-double gained(const RunResult& result) {
-  return result.ledger.energy() - result.ledger.initial_energy();
-}
-
-/// Start of the k-th of n drops whose last frame before the bounce falls everywhere, with equal
-/// weight: after m frames the thesis' ball has fallen G h^2 (m-1)(m-2)/2; here m = 59 to 60.
-Scene drop_at_phase(int k, int n) {
-  const double step = G / 3600.0;
-  const double height = 0.5 + step * 58.0 * (57.0 / 2.0 + (k + 0.5) / n);
-  return scene("bounce", {{"body.ball.position", fmt::format("[0, {}, 0]", height)}});
-}
-
-/// The bullet at a speed and a phase of the frame.
-Scene bullet(double speed, double phase, double frame) {
-  return scene("bullet",
-               {{"body.bullet.velocity", fmt::format("[{}, 0, 0]", speed)},
-                {"body.bullet.position", fmt::format("[{}, 0, 0]", -1.0 - phase * speed * frame)}});
-}
-
-constexpr double wall = 0.02;    // m, as in the scene
-constexpr double radius = 0.02;  // m
-constexpr std::uint64_t seed = 20260107;
-
-/// Fraction of stratified phases that tunnel; exact within 1/n for any interval of phases.
-double tunnelled_fraction(RunChoice choice, double speed, int n) {
-  const double frame = 1.0 / 60.0;
-  choice.frames = FixedFrames{frame};
-  choice.duration = 2.0 / speed + 4.0 * frame;
-  const double shift = Random(seed, static_cast<std::uint64_t>(speed)).uniform();
-  double count = 0.0;
-  for (int k = 0; k < n; ++k) {
-    count += measure(bullet(speed, (k + shift) / n, frame), choice, "tunnelled").value;
-  }
-  return count / n;
-}
-
-RunChoice by_scheme(const std::string& name, bool equal = false) {
-  RunChoice choice;
-  choice.method = {name, "thesis-euler",
-                   name == "bisected" || name == "geometric" ? "bisection" : "sat", "thesis"};
-  choice.equal_substeps = equal;
-  choice.threshold = 0.5 * (wall + 2.0 * radius);
-  return choice;
-}
-
-}  // namespace
+using namespace kairos::experiments::thesis;
 
 TEST_CASE("prediction 1: the original scheme gains G^2 h^2/(2m) a frame, whatever the bounces",
           "[prediction]") {
   for (const double h : {1.0 / 30, 1.0 / 60, 1.0 / 240, 1.0 / 1000}) {
     CAPTURE(h);
-    const Scene world = scene("bounce");
-    const RunResult result = measure(world, thesis(h, 600.0), "frames").result;
+    const Scene world = shipped("bounce");
+    const RunResult result = measured_run(world, thesis_choice(h, 600.0), "frames").result;
     // The first frame has a = 0; n is the number of frames that were stepped.
     const double n = static_cast<double>(result.cost.steps);
     const double predicted = (n - 1.0) * G * G * h * h / 2.0;
@@ -120,75 +39,38 @@ TEST_CASE("prediction 1: the original scheme gains G^2 h^2/(2m) a frame, whateve
 
 TEST_CASE("prediction 1: symplectic Euler loses as much, orders of 2 and more gain nothing",
           "[prediction]") {
-  RunChoice choice = thesis(1.0 / 60.0, 60.0);
+  RunChoice choice = thesis_choice(1.0 / 60.0, 60.0);
   const double predicted = 3599.0 * G * G / (2.0 * 3600.0);
   choice.method.integrator = "symplectic-euler";
   // To within one frame: the lagged acceleration of the thesis skips the first.
-  CHECK(gained(measure(scene("bounce"), choice, "frames").result) ==
+  CHECK(gained(measured_run(shipped("bounce"), choice, "frames").result) ==
         Approx(-predicted).epsilon(1.0 / 3000.0));
   for (const char* integrator : {"velocity-verlet", "rk4"}) {
     choice.method.integrator = integrator;
-    const RunResult result = measure(scene("bounce"), choice, "frames").result;
+    const RunResult result = measured_run(shipped("bounce"), choice, "frames").result;
     CHECK(std::abs(gained(result)) <= 8.0 * epsilon * result.ledger.flow());
   }
 }
 
 TEST_CASE("prediction 2: no jiggle at a fixed frame time; about j/3 with jitter", "[prediction]") {
-  RunChoice choice = thesis(1.0 / 60.0, 1.25);
   constexpr int n = 1500;
   for (const double jitter : {0.0, 0.3}) {
-    double turned = 0.0;
-    for (int k = 0; k < n; ++k) {
-      choice.frames =
-          JitteredFrames{1.0 / 60.0, jitter, 0.0, 10.0, seed + static_cast<std::uint64_t>(k)};
-      const Scene world = drop_at_phase(k, n);
-      turned += std::min(1.0, measure(world, choice, "separating_impacts").value);
-    }
+    const double turned = turned_fraction(jitter, n);
     // Four standard deviations of a fraction of n runs; j/3 itself is the first order in j.
     const double expected = jitter / 3.0;
-    CAPTURE(jitter, turned / n);
-    CHECK(std::abs(turned / n - expected) <= 4.0 * std::sqrt(expected * (1.0 - expected) / n));
+    CAPTURE(jitter, turned);
+    CHECK(std::abs(turned - expected) <= 4.0 * std::sqrt(expected * (1.0 - expected) / n));
   }
 }
-
-namespace {
-
-/// The thesis' reflection with restitution: no approach test, and the normal speed scaled by e.
-class LossyReflection : public ImpactLaw {
- public:
-  explicit LossyReflection(double e) : e_(e) {}
-  [[nodiscard]] LawInfo info() const override { return {"lossy-reflection", false, ""}; }
-  ImpactEnergy apply(const Contact&, ImpactBody a, ImpactBody b) const override {
-    (a.inertia.mass > 0.0 ? a : b).state.twist.linear.y() *= -e_;
-    return {};
-  }
-
- private:
-  double e_;
-};
-
-}  // namespace
 
 TEST_CASE("prediction 2: a reflection that loses speed jiggles in about 1-e of the bounces",
           "[prediction]") {
   constexpr int n = 400;
   for (const double e : {0.9, 0.7, 0.5}) {
-    double turned = 0.0;
-    for (int k = 0; k < n; ++k) {
-      const Model model(drop_at_phase(k, n));
-      const Method method{.stepper = find_integrator("thesis-euler"),
-                          .detector = find_detector("sat"),
-                          .law = std::make_shared<LossyReflection>(e),
-                          .broad_phase = find_broad_phase(model.broad_phase()),
-                          .swept_bounds = swept_bounds()};
-      MetricRecorder recorder({{"separating_impacts"}, ""});
-      const SchemeOptions options{.frames = FixedFrames{1.0 / 60.0}, .duration = 1.25};
-      const RunResult result = find_scheme("original")->run(model, method, options, recorder);
-      turned += std::min(1.0, recorder.value("separating_impacts", result).value());
-    }
+    const double turned = turned_fraction_lossy(e, n);
     // Physical: gravity between the two frames changes the speed by G h/v = 1.7 %; and 1/n.
-    CAPTURE(e, turned / n);
-    CHECK(std::abs(turned / n - (1.0 - e)) <= 0.02);
+    CAPTURE(e, turned);
+    CHECK(std::abs(turned - (1.0 - e)) <= 0.02);
   }
 }
 
@@ -197,10 +79,10 @@ TEST_CASE("prediction 3: whether the last frame lands in the wall can hang on ro
   // From H = 4.9 m the floor is reached at 1 s exactly, a multiple of either frame time. What the
   // last frame sees is then roundoff: above the floor for one frame time and below for the other.
   const auto height_at_1s = [](int frames_per_second) {
-    RunChoice choice = thesis(1.0 / frames_per_second, 1.0);
+    RunChoice choice = thesis_choice(1.0 / frames_per_second, 1.0);
     choice.method.integrator = "velocity-verlet";
     const Simulation run =
-        simulate(scene("bounce", {{"body.ball.position", "[0, 5.4, 0]"}}), choice);
+        simulate(shipped("bounce", {{"body.ball.position", "[0, 5.4, 0]"}}), choice);
     return run.trajectory.frame_state(static_cast<std::size_t>(frames_per_second))[1]
                .pose.position.y() -
            0.5;
@@ -218,8 +100,9 @@ TEST_CASE("prediction 4: the tunnelled fraction is max(0, 1 - (w+2r)/(v h))", "[
   constexpr int n = 128;
   for (const double speed : {1.0, 3.0, 4.0, 6.0, 10.0, 20.0, 60.0, 200.0, 1000.0, 1e5}) {
     CAPTURE(seed, speed);
-    const double predicted = std::max(0.0, 1.0 - (wall + 2.0 * radius) * 60.0 / speed);
-    CHECK(std::abs(tunnelled_fraction(by_scheme("original"), speed, n) - predicted) <= 1.0 / n);
+    const double predicted = std::max(0.0, 1.0 - bullet_length * 60.0 / speed);
+    CHECK(std::abs(tunnelled_fraction(substep_choice("original"), speed, n) - predicted) <=
+          1.0 / n);
   }
 }
 
@@ -227,11 +110,10 @@ TEST_CASE("event-driven never tunnels and keeps its speed, from 1 m/s to 1e8 m/s
   for (double speed = 1.0; speed <= 1e8; speed *= 10.0) {
     CAPTURE(speed);
     for (int k = 0; k < 16; ++k) {
-      const double frame = 1.0 / 60.0;
       RunChoice choice;
       choice.frames = FixedFrames{frame};
       choice.duration = 2.0 / speed + 2.0 * frame;
-      const Model model(bullet(speed, k / 16.0, frame));
+      const Model model(bullet_at_phase(speed, k / 16.0));
       MetricRecorder recorder(
           {{"tunnelled", "max_penetration", "max_penetration_between", "end_speed"}, ""});
       const RunResult result = simulate(model, choice, recorder);
@@ -249,8 +131,8 @@ TEST_CASE("event-driven never tunnels and keeps its speed, from 1 m/s to 1e8 m/s
 TEST_CASE("prediction 5: gravity is a force, so a ball of mass m falls with G/m", "[prediction]") {
   for (const double mass : {0.5, 1.0, 4.0}) {
     const Scene world =
-        scene("bounce", {{"gravity", "\"force\""}, {"body.ball.mass", fmt::format("{}", mass)}});
-    const RunResult result = measure(world, thesis(1.0 / 60.0, 0.5), "frames").result;
+        shipped("bounce", {{"gravity", "\"force\""}, {"body.ball.mass", fmt::format("{}", mass)}});
+    const RunResult result = measured_run(world, thesis_choice(1.0 / 60.0, 0.5), "frames").result;
     // 30 frames, the first with a = 0: v = -29 h G/m.
     CHECK(result.state[1].twist.linear.y() ==
           Approx(-29.0 / 60.0 * G / mass).epsilon(30.0 * epsilon));
@@ -259,8 +141,9 @@ TEST_CASE("prediction 5: gravity is a force, so a ball of mass m falls with G/m"
 
 TEST_CASE("prediction 6: the conveyor swallows a ball lighter than its belt", "[prediction]") {
   const auto lowest = [](double mass) {
-    const Simulation run = simulate(
-        scene("conveyor", {{"body.ball.mass", fmt::format("{}", mass)}}), thesis(1.0 / 60.0, 1.5));
+    const Simulation run =
+        simulate(shipped("conveyor", {{"body.ball.mass", fmt::format("{}", mass)}}),
+                 thesis_choice(1.0 / 60.0, 1.5));
     double y = 1.0;
     for (std::size_t n = 0; n < run.trajectory.frame_times().size(); ++n) {
       y = std::min(y, run.trajectory.frame_state(n)[1].pose.position.y());
@@ -283,7 +166,7 @@ TEST_CASE("prediction 7: ball on ball, the direction is wrong by the angle off t
         "position = [{}, {}, 0]\nvelocity = [0.1, 0, 0]\n"
         "[[body]]\nname = \"b\"\nentity = \"ball\"\nradius = 0.1\nmass = 1.0\n",
         -(reach + 0.0002) * std::cos(theta), -(reach + 0.0002) * std::sin(theta));
-    RunChoice choice = thesis(0.01, 0.04);
+    RunChoice choice = thesis_choice(0.01, 0.04);
     const RunResult result = simulate(parse_scene(text, "two.toml"), choice).result;
     REQUIRE(result.cost.impacts >= 1);
     const Vector3 v = result.state[1].twist.linear;
@@ -309,7 +192,7 @@ TEST_CASE("prediction 8: one collision per object as `current` in a frame, and t
       "position = [1, 0.15, 0]\nvelocity = [0, -6, 0]\n"
       "[[body]]\nname = \"floor\"\nentity = \"wall\"\nshape = \"half-space\"\n";
   const Simulation run =
-      simulate(parse_scene(balls_before_floor, "guard.toml"), thesis(1.0 / 60.0, 0.5));
+      simulate(parse_scene(balls_before_floor, "guard.toml"), thesis_choice(1.0 / 60.0, 0.5));
   const auto& events = run.trajectory.events();
   REQUIRE(events.size() >= 2);
   CHECK(events[0].a == 0);
@@ -320,28 +203,28 @@ TEST_CASE("prediction 8: one collision per object as `current` in a frame, and t
 TEST_CASE("prediction 12: fig. 15 taken literally still tunnels; its mends do not",
           "[prediction]") {
   constexpr int n = 512;
-  const double literal = tunnelled_fraction(by_scheme("substepped"), 20.0, n);
+  const double literal = tunnelled_fraction(substep_choice("substepped"), 20.0, n);
   INFO("literal fraction " << literal);
   CHECK(literal == Approx(0.09).margin(0.02));  // "about 9 %": the reading's own precision
   for (const double speed : {5.0, 20.0, 60.0}) {
-    CHECK(tunnelled_fraction(by_scheme("substepped", true), speed, 64) == 0.0);
-    CHECK(tunnelled_fraction(by_scheme("bisected"), speed, 64) == 0.0);
-    CHECK(tunnelled_fraction(by_scheme("geometric"), speed, 64) == 0.0);
+    CHECK(tunnelled_fraction(substep_choice("substepped", true), speed, 64) == 0.0);
+    CHECK(tunnelled_fraction(substep_choice("bisected"), speed, 64) == 0.0);
+    CHECK(tunnelled_fraction(substep_choice("geometric"), speed, 64) == 0.0);
   }
 }
 
 TEST_CASE("substepping beyond the stated number of substeps is refused with a reason",
           "[prediction]") {
-  RunChoice choice = by_scheme("substepped");
+  RunChoice choice = substep_choice("substepped");
   choice.max_substeps = 10;
   choice.frames = FixedFrames{1.0 / 60.0};
-  const RunResult result = simulate(bullet(1000.0, 0.0, 1.0 / 60.0), choice).result;
+  const RunResult result = simulate(bullet_at_phase(1000.0, 0.0), choice).result;
   CHECK(result.status == RunStatus::stopped);
   CHECK(result.reason.find("substep") != std::string::npos);
 }
 
 TEST_CASE("bounce, event-driven: energy within 1e-12 and no overlap over 600 s", "[prediction]") {
-  const Model model(scene("bounce"));
+  const Model model(shipped("bounce"));
   RunChoice choice;
   choice.duration = 600.0;
   MetricRecorder recorder(
@@ -356,7 +239,7 @@ TEST_CASE("bounce, event-driven: energy within 1e-12 and no overlap over 600 s",
 }
 
 TEST_CASE("bounce with e = 0.5 rests at Zeno's limit and stays", "[prediction]") {
-  const Model model(scene("bounce-inelastic"));
+  const Model model(shipped("bounce-inelastic"));
   RunChoice choice;
   choice.duration = 5.0;
   MetricRecorder recorder({{"rest_time", "end_y", "end_speed", "max_penetration"}, ""});
@@ -375,11 +258,11 @@ TEST_CASE("bat: the original overlaps and passes through, event-driven never doe
     double passed = 0.0;
     double overlapped = 0.0;
     for (int k = 0; k < n; ++k) {
-      const Model model(scene(
+      const Model model(shipped(
           "bat", {{"body.bat.drive.frequency", fmt::format("{}", f)},
                   {"body.ball.position", fmt::format("[{}, 0, 0]", 0.05 + 0.3 * (k + 0.5) / n)}}));
       MetricRecorder original({{"crossings", "max_penetration"}, ""});
-      const RunResult literal = simulate(model, thesis(1.0 / 60.0, 1.0 / f), original);
+      const RunResult literal = simulate(model, thesis_choice(1.0 / 60.0, 1.0 / f), original);
       passed += std::min(1.0, original.value("crossings", literal).value());
       overlapped += original.value("max_penetration", literal).value() > 0.0 ? 1.0 : 0.0;
 
@@ -410,7 +293,7 @@ TEST_CASE("spinning-box: caught, and the integrators agree on the impact as h ->
     choice.method.integrator = integrator;
     choice.step = h;
     choice.duration = 0.04;
-    return measure(scene("spinning-box"), choice, "first_impact").value;
+    return measured_run(shipped("spinning-box"), choice, "first_impact").value;
   };
   const double reference = first_impact("rk4", 5e-5);
   struct Order {

@@ -2,6 +2,7 @@
 
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
+#include "tests/locations.hpp"
 
 #include <sstream>
 #include <string>
@@ -11,7 +12,7 @@ using namespace kairos::tests;
 
 namespace {
 
-const std::string root = KAIROS_SOURCE_DIR "/";
+const std::string root = source_path("");
 
 /// The words of every line of a README's code blocks that starts with `kairos`.
 std::vector<std::vector<std::string>> commands_of(const std::string& text) {

@@ -10,6 +10,7 @@
 #include "experiments/sweeps/experiment.hpp"
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
+#include "tests/locations.hpp"
 
 #include <set>
 #include <string>
@@ -69,7 +70,7 @@ TEST_CASE("text cannot become markup", "[report]") {
 TEST_CASE("the Markdown of the paper: headings, lists, marks, and nothing passes as markup",
           "[report]") {
   std::vector<std::string> asked;
-  const Placeholder placeholder = [&asked](std::string_view kind, std::string_view what) {
+  const Substitution substitution = [&asked](std::string_view kind, std::string_view what) {
     asked.push_back(std::string(kind) + ":" + std::string(what));
     return std::string("<i>42</i>");
   };
@@ -77,7 +78,7 @@ TEST_CASE("the Markdown of the paper: headings, lists, marks, and nothing passes
       "# Title\n\n## A <part>\n\nOne *two* **three**\n`4 < 5` {{value:a.b}} [in](#place) [no] "
       "(#x)\nsee [@X; @Y].\n\n"
       "- first\n  goes on\n- second\n\n1. one\n\n{{figure:f}}\n\n```\n<code>\n```\nEnd * here.\n",
-      "p-", placeholder);
+      "p-", substitution);
   CHECK(page.html ==
         "<h3 id=\"p-a-part-\">A &lt;part&gt;</h3>\n"
         "<p>One <em>two</em> <strong>three</strong> <code>4 &lt; 5</code> <i>42</i> <a "
@@ -111,7 +112,7 @@ TEST_CASE("the bibliography is read whole, and what is wrong in it is named by l
 }
 
 TEST_CASE("the paper cites what is in the bibliography, each entry of it once", "[report]") {
-  const std::string folder = std::string(KAIROS_SOURCE_DIR) + "/paper/";
+  const std::string folder = kairos::tests::source_path("paper/");
   const std::string text = read_all(folder + "references.bib");
   const auto entries = read_bibliography(text, "references.bib");
   std::set<std::string> keys;
