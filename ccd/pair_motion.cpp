@@ -44,7 +44,7 @@ Quaternion turned_by(const Motion& motion, double rate, double s) {
   double sine = 0.0;
   double cosine = 0.0;
   sine_cosine(half, sine, cosine);
-  const Vector3& w = motion.angular_velocity[0];
+  const Vector3& w = motion.rotation_rate;
   const Vector4& c = motion.quaternion[0];
   const double k = sine / rate;
   return Quaternion(cosine, k * w.x(), k * w.y(), k * w.z()) * Quaternion(c[0], c[1], c[2], c[3]);
@@ -74,7 +74,7 @@ Vector3 rate_of_turn(const Motion& motion, double s) {
 void orient(const Motion& motion, double rate, double s, bool turns, Matrix3& R, Vector3& w) {
   if (turns && motion.rotation == RotationKind::constant_rate && rate > 0.0) {
     R = rotation_matrix(turned_by(motion, rate, s));
-    w = motion.angular_velocity[0];
+    w = motion.rotation_rate;
     return;
   }
   R = rotation_matrix(motion.orientation(s));
@@ -82,7 +82,7 @@ void orient(const Motion& motion, double rate, double s, bool turns, Matrix3& R,
     w.setZero();
   } else {
     w = motion.rotation == RotationKind::polynomial ? rate_of_turn(motion, s)
-                                                    : Vector3(motion.angular_velocity[0]);
+                                                    : motion.rotation_rate;
   }
 }
 
@@ -185,9 +185,9 @@ PairMotion::PairMotion(const MovingShape& a, const MovingShape& b, const Window&
       rotation_error_ += is_identity(motion.quaternion[0]) ? 0.0 : 8.0 * u;
     } else if (motion.rotation == RotationKind::constant_rate) {
       rotation_error_ += 40.0 * u;
-      (second ? rate_b_ : rate_a_) = motion.angular_velocity[0].norm();
+      (second ? rate_b_ : rate_a_) = motion.rotation_rate.norm();
       if (s != 0.0) {  // s + t is rounded
-        const double rate = motion.angular_velocity[0].norm();
+        const double rate = motion.rotation_rate.norm();
         rotation_error_ += 2.0 * u * rate * std::abs(s);
         rotation_error_rate_ += 2.0 * u * rate;
       }

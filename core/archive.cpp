@@ -46,7 +46,7 @@ void persist(Archive& archive, BodyState& value) { archive(value.pose, value.twi
 
 void persist(Archive& archive, Motion& value) {
   archive(value.start, value.duration, value.position, value.velocity, value.rotation,
-          value.quaternion, value.angular_velocity, value.error_radius);
+          value.quaternion, value.rotation_rate, value.angular_velocity, value.error_radius);
 }
 
 }  // namespace core

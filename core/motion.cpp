@@ -128,6 +128,7 @@ Motion Motion::ballistic(Instant start, double duration, const Pose& pose, const
   motion.rotation = twist.angular.isZero(0.0) ? RotationKind::fixed : RotationKind::constant_rate;
   const Quaternion& q = pose.orientation;
   motion.quaternion[0] = Vector4(q.w(), q.x(), q.y(), q.z());
+  motion.rotation_rate = twist.angular;
   motion.angular_velocity[0] = twist.angular;
   return motion;
 }
@@ -141,7 +142,7 @@ Quaternion Motion::orientation(double s) const {
       return {c[0], c[1], c[2], c[3]};
     case RotationKind::constant_rate: {
       const Quaternion q(c[0], c[1], c[2], c[3]);
-      const Vector3& w = angular_velocity[0];
+      const Vector3& w = rotation_rate;
       const double rate = w.norm();
       if (!(rate > 0.0)) {
         return q;
@@ -178,12 +179,12 @@ Motion Motion::shifted(double s0) const {
   later.duration = duration - s0;
   later.position = position.shifted(s0);
   later.velocity = velocity.shifted(s0);
+  later.angular_velocity = angular_velocity.shifted(s0);
   if (rotation == RotationKind::constant_rate) {
     const Quaternion q = orientation(s0).normalized();
     later.quaternion[0] = Vector4(q.w(), q.x(), q.y(), q.z());
   } else if (rotation == RotationKind::polynomial) {
     later.quaternion = quaternion.shifted(s0);
-    later.angular_velocity = angular_velocity.shifted(s0);
   }
   return later;
 }
@@ -218,7 +219,7 @@ double Motion::angular_speed_bound(double s0, double s1) const {
     case RotationKind::fixed:
       return 0.0;
     case RotationKind::constant_rate:
-      return angular_velocity[0].norm() * (1.0 + 4.0 * unit_roundoff);
+      return rotation_rate.norm() * (1.0 + 4.0 * unit_roundoff);
     case RotationKind::polynomial:
       break;
   }

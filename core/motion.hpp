@@ -10,7 +10,7 @@ inline namespace core {
 /// How the orientation of a `Motion` changes.
 enum class RotationKind {
   fixed,          ///< q(s) = q_0
-  constant_rate,  ///< q(s) = exp(w s / 2) q_0, w constant in the world frame
+  constant_rate,  ///< q(s) = exp(w s / 2) q_0, w = `rotation_rate`
   polynomial,     ///< q(s) = Q(s) / |Q(s)|, Q a polynomial in R^4
 };
 
@@ -31,7 +31,8 @@ struct Motion {
   RotationKind rotation = RotationKind::fixed;
   /// q_WB as (w, x, y, z); degree 0 unless `rotation` is `polynomial`.
   Polynomial<4> quaternion{Vector4(1.0, 0.0, 0.0, 0.0)};
-  /// Angular velocity, world frame, rad/s; degree 0 unless `rotation` is `polynomial`.
+  Vector3 rotation_rate = Vector3::Zero();  ///< of `constant_rate`, world frame, rad/s
+  /// Angular velocity, world frame, rad/s; of its own, as `velocity` is.
   Polynomial<3> angular_velocity;
   double error_radius = 0.0;  ///< m
 

@@ -14,6 +14,7 @@ inline void fixed_rotation(Motion& motion, const Quaternion& q) {
   motion.rotation = RotationKind::fixed;
   motion.quaternion.resize(0);
   motion.quaternion[0] = {q.w(), q.x(), q.y(), q.z()};
+  motion.rotation_rate.setZero();
   motion.angular_velocity.resize(0);
   motion.angular_velocity[0].setZero();
 }
@@ -22,6 +23,7 @@ inline void fixed_rotation(Motion& motion, const Quaternion& q) {
 inline void constant_rate_rotation(Motion& motion, const Quaternion& q, const Vector3& w) {
   fixed_rotation(motion, q);
   motion.rotation = RotationKind::constant_rate;
+  motion.rotation_rate = w;
   motion.angular_velocity[0] = w;
 }
 

@@ -145,6 +145,9 @@ class Euler final : public Stepper {
     const Vector3& w =
         variant == Variant::symplectic ? record.after_twist.angular : record.before.twist.angular;
     constant_rate_rotation(motion, record.before.pose.orientation, w);
+    motion.angular_velocity.resize(1);
+    motion.angular_velocity[0] = record.before.twist.angular;
+    motion.angular_velocity[1] = record.used.angular;
   }
 
   Accelerations accelerations_;

@@ -128,9 +128,9 @@ class VelocityVerlet final : public Stepper {
     if (steady || coarse) {
       constant_rate_rotation(motion, before.pose.orientation,
                              w0 + record.first.angular * (0.5 * h_));
-      return;
+    } else {
+      cubic_rotation(motion, h_, before, record.after);
     }
-    cubic_rotation(motion, h_, before, record.after);
     motion.angular_velocity.resize(2);
     motion.angular_velocity[0] = w0;
     motion.angular_velocity[1] = record.first.angular;

@@ -20,7 +20,7 @@ void add(CsvRow& row, const Shape& shape, const Motion& motion) {
   const Vector4& q = motion.quaternion[0];
   row.quaternion(Quaternion(q[0], q[1], q[2], q[3]));
   row.vector(coefficient(1)).vector(2.0 * coefficient(2));
-  row.vector(motion.angular_velocity[0]);
+  row.vector(motion.rotation_rate);
 }
 
 }  // namespace

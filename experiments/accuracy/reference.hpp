@@ -54,7 +54,7 @@ inline Mat orientation(const Motion& motion, Real s) {
     }
     q = Q(sum[0], sum[1], sum[2], sum[3]);
   } else if (motion.rotation == RotationKind::constant_rate) {
-    const Vec w = motion.angular_velocity[0].cast<Real>();
+    const Vec w = motion.rotation_rate.cast<Real>();
     const Real rate = w.norm();
     if (rate > 0) {
       const Real half = rate * s / 2;

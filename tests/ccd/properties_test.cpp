@@ -67,7 +67,7 @@ TEST_CASE("answers are invariant under rigid transformations", "[ccd][properties
       motion.position[k] = turn * motion.position[k];
     }
     motion.position[0] += size * shift;
-    motion.angular_velocity[0] = turn * motion.angular_velocity[0];
+    motion.rotation_rate = turn * motion.rotation_rate;
     for (int k = 0; k <= motion.quaternion.degree(); ++k) {
       const Vector4 c = motion.quaternion[k];
       const Quaternion q = turn * Quaternion(c[0], c[1], c[2], c[3]);
@@ -109,7 +109,7 @@ TEST_CASE("time reversal: the first contact forwards is the last parting backwar
           reversed.position[1] = -reversed.position[1];
         }
         reversed.velocity = reversed.position.differentiated();
-        reversed.angular_velocity[0] = -reversed.angular_velocity[0];
+        reversed.rotation_rate = -reversed.rotation_rate;
         return reversed;
       };
       const Query reversed{q.a, q.b, backwards(q.motion_a), backwards(q.motion_b), toi.t_lo};

@@ -26,8 +26,7 @@ std::string_view take_line(std::string_view& text) {
 void answer(const ToiQuery& query) {
   static const auto detector = ccd::make_certified();
   // What takes long is bounded, and tested elsewhere; here a turn of 1e3 rad is enough.
-  if ((query.motion_a.angular_velocity[0].norm() + query.motion_b.angular_velocity[0].norm()) *
-          query.duration >
+  if ((query.motion_a.rotation_rate.norm() + query.motion_b.rotation_rate.norm()) * query.duration >
       1e3) {
     return;
   }
@@ -41,7 +40,7 @@ void answer(const ToiQuery& query) {
 }
 
 void read(std::string_view text) {
-  const ToiQueryFormat format(take_line(text), "input");
+  const ToiQueryFormat format(take_line(text), 1, "input");
   ToiQueryFormat::Scratch scratch;
   for (int row = 0; row < most_rows && !text.empty(); ++row) {
     const std::string_view line = take_line(text);
