@@ -72,7 +72,7 @@ class EnergyLedger {
   [[nodiscard]] double line(EnergyLine line) const {
     return lines_[static_cast<std::size_t>(line)].value();
   }
-  /// Sum of the magnitudes of all flows so far, J.
+  /// Sum of the magnitudes of all flows so far, J; what the bodies brought with them is the first.
   [[nodiscard]] double flow() const { return flow_.value(); }
   /// What no line explains; a test holds it below 8 eps of `flow()`.
   [[nodiscard]] double unexplained() const;

@@ -202,6 +202,13 @@ void EnergyAccount::carried(const Island& island, Instant t, std::span<const Bod
 
 void EnergyAccount::open(Instant t, std::span<const BodyState> bodies) {
   ledger_.open(kinetic(bodies), potential(t, bodies));
+  ledger_.exchange(ledger_.kinetic());
+  for (const BodyIndex i : free_by_name_) {  // one by one: their sum may cancel
+    ledger_.exchange(model_.gravity_potential(i, bodies[i].pose.position));
+  }
+  for (const Island& island : model_.islands()) {
+    ledger_.exchange(island_potential(island, t, bodies));
+  }
 }
 
 void EnergyAccount::balance(Instant t, std::span<const BodyState> bodies) {

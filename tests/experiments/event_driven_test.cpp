@@ -4,6 +4,7 @@
 #include "experiments/registry.hpp"
 #include "experiments/simulation.hpp"
 #include "tests/catch.hpp"
+#include "tests/experiments/ledger_check.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -35,14 +36,6 @@ std::vector<Event> of_kind(const Trajectory& trajectory, EventKind kind) {
     }
   }
   return found;
-}
-
-void check_ledger(const RunResult& result) {
-  // Each booking rounds a handful of products: 8 eps of all that flowed (DESIGN), plus the rounding
-  // of the balance itself.
-  const double scale = result.ledger.flow() + std::abs(result.ledger.kinetic()) +
-                       std::abs(result.ledger.potential());
-  CHECK(std::abs(result.ledger.unexplained()) <= 8.0 * eps * scale);
 }
 
 const std::string floor_body = R"(
@@ -77,7 +70,7 @@ TEST_CASE("an elastic ball keeps its energy and its impact times over 1000 bounc
     REQUIRE(impacts[k].contact.gap >= 0.0);
   }
   CHECK(std::abs(sim.result.ledger.energy() / sim.result.ledger.initial_energy() - 1.0) <= 1e-12);
-  check_ledger(sim.result);
+  tests::check_explained(sim.result.ledger);
 }
 
 TEST_CASE("bounces with e = 0.5 die down at the Zeno time and the ball stays", "[event-driven]") {
@@ -92,7 +85,7 @@ TEST_CASE("bounces with e = 0.5 die down at the Zeno time and the ball stays", "
   CHECK(sim.result.state[1].twist.linear.norm() == 0.0);
   // 1e-10 of the extent is what the settling height may be.
   CHECK(std::abs(sim.result.state[1].pose.position.y() - 0.5) <= 2e-10);
-  check_ledger(sim.result);
+  tests::check_explained(sim.result.ledger);
 }
 
 TEST_CASE("Siconos' ball: 44 impacts before 8.5 s with e = 0.9, rest at 8.5789491787",
@@ -136,7 +129,7 @@ TEST_CASE("a ball at rest on a tilted plane slides without friction: s = g sin(a
   const double speed = 9.8 * std::sin(a) * 2.0;
   CHECK(std::abs(end.twist.linear.norm() - speed) <= 1e-12 * speed);  // a parabola: roundoff
   CHECK(std::abs(Vector3(nx, ny, 0.0).dot(end.pose.position) - 0.5) <= 1e-12);
-  check_ledger(sim.result);
+  tests::check_explained(sim.result.ledger);
 }
 
 TEST_CASE("a ball slides off the edge of a box and falls", "[event-driven]") {
@@ -152,7 +145,7 @@ TEST_CASE("a ball slides off the edge of a box and falls", "[event-driven]") {
   const BodyState& end = sim.result.state[1];
   CHECK(std::abs(end.pose.position.x() - 15.0) <= 1e-9);
   CHECK(std::abs(end.pose.position.y() - (0.5 - 4.9 * 2.8 * 2.8)) <= 1e-9);
-  check_ledger(sim.result);
+  tests::check_explained(sim.result.ledger);
 }
 
 TEST_CASE("a ball on a vibrating table lifts off where the table draws away", "[event-driven]") {
@@ -171,7 +164,7 @@ TEST_CASE("a ball on a vibrating table lifts off where the table draws away", "[
   const auto leaves = of_kind(sim.trajectory, EventKind::contact_ends);
   REQUIRE(leaves.size() == 1);
   CHECK(std::abs(leaves[0].time.seconds - std::asin(9.8 / (0.05 * w * w)) / w) <= 1e-6);
-  check_ledger(sim.result);
+  tests::check_explained(sim.result.ledger);
 }
 
 TEST_CASE("a pad is entered and left at located times, and its work is booked", "[event-driven]") {
@@ -191,7 +184,7 @@ TEST_CASE("a pad is entered and left at located times, and its work is booked", 
   CHECK(std::abs(enters[0].time.seconds - fall) <= 1e-8);
   CHECK(std::abs(leaves[0].time.seconds - 3.0 * fall) <= 1e-7);
   CHECK(std::abs(sim.result.ledger.line(EnergyLine::field_work)) > 0.0);
-  check_ledger(sim.result);
+  tests::check_explained(sim.result.ledger);
 }
 
 TEST_CASE("Newton's cradle: n in, n out", "[event-driven]") {
@@ -226,7 +219,7 @@ TEST_CASE("the thesis' conveyor swallows a light ball: the run stops and says so
   CHECK(sim.result.status == RunStatus::stopped);
   CHECK(sim.result.reason.find("still approaching") != std::string::npos);
   CHECK(sim.result.reason.find("'belt'") != std::string::npos);
-  check_ledger(sim.result);  // the last frame shows what the last impact left
+  tests::check_explained(sim.result.ledger);  // the last frame shows what the last impact left
 }
 
 TEST_CASE("a box that rocks to rest stops the run as an accumulation", "[event-driven]") {
@@ -242,7 +235,7 @@ restitution = 0.3
 )");
   CHECK(sim.result.status == RunStatus::stopped);
   CHECK(sim.result.reason.find("accumulation") != std::string::npos);
-  check_ledger(sim.result);
+  tests::check_explained(sim.result.ledger);
   CHECK(sim.result.end.seconds > 0.3);  // it fell and bounced first
 }
 
@@ -271,7 +264,7 @@ TEST_CASE("both contacts of a fast bat within one frame are found", "[event-driv
   REQUIRE(sim.result.status == RunStatus::completed);
   CHECK(of_kind(sim.trajectory, EventKind::impact).size() >= 1);
   CHECK(sim.result.state[1].pose.position.x() > 0.4);  // driven away, never passed
-  check_ledger(sim.result);
+  tests::check_explained(sim.result.ledger);
 }
 
 namespace {

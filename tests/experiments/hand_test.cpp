@@ -7,6 +7,7 @@
 #include "experiments/registry.hpp"
 #include "experiments/simulation.hpp"
 #include "tests/catch.hpp"
+#include "tests/experiments/ledger_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -170,10 +171,7 @@ TEST_CASE("hand: what it does to the ball's energy is its work, to the last joul
       INFO(choice.method.scheme << " " << integrator);
       const RunResult result = experiments::simulate(folder.scene(), choice).result;
       const EnergyLedger& ledger = result.ledger;
-      // 8 eps of all that flowed (DESIGN), plus the rounding of the balance itself.
-      const double scale =
-          ledger.flow() + std::abs(ledger.kinetic()) + std::abs(ledger.potential());
-      CHECK(std::abs(ledger.unexplained()) <= 8.0 * eps * scale);
+      tests::check_explained(ledger);
       // Caught at (1 - 4.9/16) m with speed 9.8/4, let go at y = 0 with 1 m/s.
       if (choice.method.integrator == std::string("closed-form")) {
         CHECK(ledger.line(EnergyLine::conveyor_and_hand) == Approx(1.0 - 2.0 * 9.8).epsilon(1e-13));

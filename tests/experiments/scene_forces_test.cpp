@@ -5,6 +5,7 @@
 #include "core/scene.hpp"
 #include "experiments/simulation.hpp"
 #include "tests/catch.hpp"
+#include "tests/experiments/ledger_check.hpp"
 
 #include <cmath>
 #include <limits>
@@ -50,12 +51,6 @@ Simulation run(const std::string& force, const std::string& scheme,
   return simulate(parse_scene(two_bodies + force, "test.toml"), choice);
 }
 
-/// 8 eps of the flows and of the balance itself.
-void check_explained(const EnergyLedger& ledger) {
-  const double scale = ledger.flow() + std::abs(ledger.kinetic()) + std::abs(ledger.potential());
-  CHECK(std::abs(ledger.unexplained()) <= 8.0 * eps * scale);
-}
-
 }  // namespace
 
 TEST_CASE("forces: under every scheme the ledger explains what each force did", "[forces]") {
@@ -76,7 +71,7 @@ TEST_CASE("forces: under every scheme the ledger explains what each force did", 
       const Simulation sim = run(force, scheme, "dopri5");
       CAPTURE(sim.result.reason);
       CHECK(sim.result.status == RunStatus::completed);
-      check_explained(sim.result.ledger);
+      tests::check_explained(sim.result.ledger);
     }
   }
 }
@@ -137,7 +132,7 @@ stiffness = )" + stiffness;
     const Simulation sim = simulate(parse_scene(text, "test.toml"), {});
     CAPTURE(sim.result.reason);
     CHECK(sim.result.status == RunStatus::completed);
-    check_explained(sim.result.ledger);
+    tests::check_explained(sim.result.ledger);
     return sim.result.state[1].pose.position.y() - 0.1;
   };
   CHECK(height_after("20") > 0.5);
@@ -183,7 +178,7 @@ rest_length = 1.1
   }
   // The integrator's tolerance of 1e-10, over a few segments.
   CHECK(std::abs(lifted - exact) <= 1e-8);
-  check_explained(sim.result.ledger);
+  tests::check_explained(sim.result.ledger);
 }
 
 TEST_CASE(
@@ -227,5 +222,5 @@ stiffness = 3
   // The integrator's tolerance of 1e-10, over 75 segments of some 10 J.
   CHECK(std::abs(ledger.line(EnergyLine::truncation)) <= 1e-7);
   CHECK(ledger.line(EnergyLine::driven_work) > 0.4);
-  check_explained(ledger);
+  tests::check_explained(ledger);
 }
