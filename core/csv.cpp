@@ -13,18 +13,6 @@ namespace kairos {
 inline namespace core {
 namespace {
 
-std::vector<std::string_view> split(std::string_view line) {
-  std::vector<std::string_view> fields;
-  while (true) {
-    const std::size_t comma = line.find(',');
-    fields.push_back(trimmed(line.substr(0, comma)));
-    if (comma == std::string_view::npos) {
-      return fields;
-    }
-    line.remove_prefix(comma + 1);
-  }
-}
-
 /// Where in a row the wanted columns are.
 std::vector<std::size_t> positions(const std::vector<std::string_view>& header,
                                    std::span<const std::string_view> columns,
@@ -65,6 +53,29 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(space) - first + 1);
 }
 
+std::string_view unquoted(std::string_view field) {
+  const std::string_view text = trimmed(field);
+  return text.size() >= 2 && text.front() == '"' && text.back() == '"'
+             ? text.substr(1, text.size() - 2)
+             : text;
+}
+
+bool split_fields(std::string_view row, std::vector<std::string_view>& fields) {
+  fields.clear();
+  bool quoted = false;
+  std::size_t start = 0;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    if (row[i] == '"') {
+      quoted = !quoted;
+    } else if (row[i] == ',' && !quoted) {
+      fields.push_back(row.substr(start, i - start));
+      start = i + 1;
+    }
+  }
+  fields.push_back(row.substr(start));
+  return !quoted;
+}
+
 CsvNumbers::CsvNumbers(const std::string& path, std::string_view text,
                        std::span<const std::string_view> columns, int first_line)
     : width_(columns.size()) {
@@ -73,6 +84,7 @@ CsvNumbers::CsvNumbers(const std::string& path, std::string_view text,
   }
   std::size_t header_width = 0;
   std::vector<std::size_t> where;
+  std::vector<std::string_view> fields;
   for (int line = first_line; !text.empty(); ++line) {
     const std::size_t end = text.find('\n');
     const std::string_view row = trimmed(text.substr(0, end));
@@ -80,7 +92,10 @@ CsvNumbers::CsvNumbers(const std::string& path, std::string_view text,
     if (row.empty() || row.front() == '#') {
       continue;
     }
-    const std::vector<std::string_view> fields = split(row);
+    if (!split_fields(row, fields)) {
+      throw InputError(path, line, "", "has a quote that does not end");
+    }
+    std::transform(fields.begin(), fields.end(), fields.begin(), unquoted);
     if (header_width == 0) {
       header_width = fields.size();
       where = positions(fields, columns, path, line);

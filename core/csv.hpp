@@ -15,8 +15,14 @@ inline namespace core {
 /// Without the white space around it.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 
+/// The text between the quotes, where a field is quoted; the trimmed field otherwise.
+[[nodiscard]] std::string_view unquoted(std::string_view field);
+/// Splits a row at the commas that no quotes enclose, into fields as they were written; false if a
+/// quote does not end.
+[[nodiscard]] bool split_fields(std::string_view row, std::vector<std::string_view>& fields);
+
 /// A small CSV file of numbers with a header, kept whole in memory: a recording, frame times.
-/// Blank lines and lines that start with # are skipped; fields are not quoted.
+/// Blank lines and lines that start with # are skipped; fields may be quoted.
 class CsvNumbers {
  public:
   /// Reads the named columns; others are ignored. Throws `InputError` with the line where a column

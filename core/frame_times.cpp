@@ -84,13 +84,31 @@ double parse_duration(std::string_view text, const TextOrigin& origin) {
   return seconds;
 }
 
+namespace {
+
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+
+/// Does the first line that is neither blank nor a comment begin with a number?
+bool starts_with_number(std::string_view text) {
+  text.remove_prefix(text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0);
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = unquoted(text.substr(0, end));
+    if (!line.empty() && line.front() != '#') {
+      return std::string_view("0123456789.+-").find(line.front()) != std::string_view::npos;
+    }
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  }
+  return false;
+}
+
+}  // namespace
+
 FrameTimes read_frame_csv(const std::string& path) {
   std::string text = read_text_file(path);
-  // A list without a header is a table with one column.
-  const std::size_t start = text.find_first_not_of(" \t\r\n");
-  const bool bare = start != std::string::npos &&
-                    std::string_view("0123456789.+-").find(text[start]) != std::string_view::npos;
-  if (bare) {
+  const bool bare = starts_with_number(text);
+  if (bare) {  // a list without a header is a table with one column
+    text.erase(0, text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0);
     text.insert(0, "duration\n");
   }
   constexpr std::string_view columns[] = {"duration"};

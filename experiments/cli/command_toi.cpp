@@ -8,7 +8,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,18 +27,24 @@ struct ToiCommand {
 
 std::shared_ptr<const ContactDetector> locating_detector(const std::string& name) {
   std::shared_ptr<const ContactDetector> detector = find_detector(name);
-  if (detector->info().locates) {
+  const auto answers = [](const ContactDetector& candidate) {
+    return candidate.info().locates && !candidate.info().at_step_ends;
+  };
+  if (answers(*detector)) {
     return detector;
   }
   std::string locating;
   for (const auto& other : detectors()) {
-    if (other->info().locates) {
+    if (answers(*other)) {
       locating += fmt::format("{}{}", locating.empty() ? "" : ", ", other->info().name);
     }
   }
-  throw InputError(
-      "", 0, "--detector",
-      fmt::format("'{}' tells whether two shapes touch, not when; allowed: {}", name, locating));
+  throw InputError("", 0, "--detector",
+                   fmt::format("'{}' {}; allowed: {}", name,
+                               detector->info().at_step_ends
+                                   ? "finds contacts only where an integrator's step ends"
+                                   : "tells whether two shapes touch, not when",
+                               locating));
 }
 
 void ToiCommand::run() const {
@@ -54,7 +59,8 @@ void ToiCommand::run() const {
   LineBlocks rows(queries);
   const std::int64_t bad = answer_toi_queries(rows, {exact, *metres, keep_going, threads});
   if (bad > 0) {
-    std::fputs(fmt::format("{}: {} rows are invalid\n", rows.name(), bad).c_str(), stderr);
+    throw InputError(rows.name(), 0, "",
+                     fmt::format("{} {} invalid", bad, bad == 1 ? "row is" : "rows are"));
   }
 }
 
@@ -76,8 +82,10 @@ void add_toi_command(CLI::App& app) {
   toi->add_option("--threads", command->threads, "how many (default: one per core)")
       ->type_name("N")
       ->check(CLI::Range(std::size_t{0}, std::size_t{1024}));
-  toi->add_flag("--keep-going", command->keep_going,
-                "name bad rows, answer them with the status `invalid`, and go on");
+  toi->add_flag(
+      "--keep-going", command->keep_going,
+      "name bad rows, answer them with the status `invalid`, and go on; the exit status is "
+      "still 2");
   toi->footer(
       "Columns, SI units, world frame: id; then for each of a_ and b_: half-extents hx,hy,hz;\n"
       "centre px,py,pz; unit quaternion qw,qx,qy,qz (body to world); velocity vx,vy,vz;\n"

@@ -19,11 +19,13 @@ constexpr std::array<std::string_view, 19> number_names{"hx", "hy", "hz", "px", 
                                                         "ay", "az", "wx", "wy", "wz"};
 enum NumberIndex : std::size_t { h = 0, p = 3, q = 6, v = 10, a = 13, w = 16 };
 
-/// Squares of lengths, and of what they come to in the window, must be finite.
+/// Squares of lengths, and of what they come to in the window, must be finite; those of gaps far
+/// below the smallest extent must not underflow.
 constexpr double largest_magnitude = 1e150;
+constexpr double smallest_extent = 1e-120;
 
 double read_number(std::string_view field, std::string_view column) {
-  std::string_view text = trimmed(field);
+  std::string_view text = unquoted(field);
   if (text.starts_with('+')) {
     text.remove_prefix(1);
   }
@@ -46,37 +48,18 @@ double read_number(std::string_view field, std::string_view column) {
 
 }  // namespace
 
-bool split_fields(std::string_view line, std::vector<std::string_view>& fields) {
-  fields.clear();
-  bool quoted = false;
-  std::size_t start = 0;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (line[i] == '"') {
-      quoted = !quoted;
-    } else if (line[i] == ',' && !quoted) {
-      fields.push_back(line.substr(start, i - start));
-      start = i + 1;
-    }
-  }
-  fields.push_back(line.substr(start));
-  return !quoted;
-}
-
-ToiQueryFormat::ToiQueryFormat(std::string_view header, const std::string& file) : file_(file) {
+ToiQueryFormat::ToiQueryFormat(std::string_view header, std::int64_t line, const std::string& file)
+    : file_(file), line_(static_cast<int>(line)) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (header.starts_with(byte_order_mark)) {
     header.remove_prefix(byte_order_mark.size());
   }
   std::vector<std::string_view> fields;
   if (!split_fields(header, fields)) {
-    throw InputError(file_, 1, "", "the header has a quote that does not end");
+    throw InputError(file_, line_, "", "the header has a quote that does not end");
   }
   for (const std::string_view field : fields) {
-    std::string_view name = trimmed(field);
-    if (name.size() >= 2 && name.front() == '"' && name.back() == '"') {
-      name = name.substr(1, name.size() - 2);
-    }
-    columns_.emplace_back(name);
+    columns_.emplace_back(unquoted(field));
   }
   id_ = need("id");
   a_ = body_columns("a_");
@@ -101,7 +84,7 @@ std::size_t ToiQueryFormat::find(const std::string& name) const {
     return absent;
   }
   if (std::find(first + 1, columns_.end(), name) != columns_.end()) {
-    throw InputError(file_, 1, name, "is the name of two columns; allowed: one");
+    throw InputError(file_, line_, name, "is the name of two columns; allowed: one");
   }
   return static_cast<std::size_t>(first - columns_.begin());
 }
@@ -109,7 +92,7 @@ std::size_t ToiQueryFormat::find(const std::string& name) const {
 std::size_t ToiQueryFormat::need(const std::string& name) const {
   const std::size_t column = find(name);
   if (column == absent) {
-    throw InputError(file_, 1, name,
+    throw InputError(file_, line_, name,
                      "is missing from the header; needed: id, then hx hy hz px py pz qw qx qy qz "
                      "vx vy vz ax ay az wx wy wz with a_ and with b_ before each, and duration");
   }
@@ -124,7 +107,7 @@ class ToiQueryFormat::Body {
 
   [[nodiscard]] Shape shape() const {
     const std::string_view kind =
-        columns_.shape == absent ? std::string_view("box") : trimmed(fields_[columns_.shape]);
+        columns_.shape == absent ? std::string_view("box") : unquoted(fields_[columns_.shape]);
     if (kind == "box" || kind.empty()) {
       return Box{{extent(h), extent(h + 1), extent(h + 2)}};
     }
@@ -163,9 +146,10 @@ class ToiQueryFormat::Body {
   }
   [[nodiscard]] double extent(std::size_t i) const {
     const double value = number(i);
-    if (!(value > 0.0)) {
+    if (!(value >= smallest_extent)) {
       throw BadField{columns_.name[i],
-                     fmt::format("{} is no half-extent; allowed: numbers > 0 (m)", value)};
+                     fmt::format("{} is no half-extent; allowed: numbers > 0, from {} (m)", value,
+                                 smallest_extent)};
     }
     return value;
   }

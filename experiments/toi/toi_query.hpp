@@ -4,6 +4,7 @@
 #include "core/shape.hpp"
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,8 +29,8 @@ struct BadField {
 /// construction; shared by threads.
 class ToiQueryFormat {
  public:
-  /// `header` is the first line; `file` is for messages. Throws `InputError`.
-  ToiQueryFormat(std::string_view header, const std::string& file);
+  /// `header` is line `line` of the file; `file` is for messages. Throws `InputError`.
+  ToiQueryFormat(std::string_view header, std::int64_t line, const std::string& file);
 
   /// Memory that reading a row uses: one per thread.
   struct Scratch {
@@ -58,13 +59,11 @@ class ToiQueryFormat {
   [[nodiscard]] std::size_t need(const std::string& name) const;
 
   std::string file_;
+  int line_;  ///< of the header
   std::vector<std::string> columns_;
   BodyColumns a_, b_;
   std::size_t id_ = 0;
   std::size_t duration_ = 0;
 };
-
-/// Splits a line of CSV at the commas that are not inside quotes. False where a quote stays open.
-[[nodiscard]] bool split_fields(std::string_view line, std::vector<std::string_view>& fields);
 
 }  // namespace kairos::experiments

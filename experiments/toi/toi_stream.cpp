@@ -131,14 +131,18 @@ class Stream {
 
  private:
   ToiQueryFormat read_header() {
-    if (!queries_.next(first_lines_, first_line_)) {
-      throw InputError(queries_.name(), 0, "", "is empty; needed: a header and one row per query");
+    std::string header;
+    while (blank(header)) {
+      if (first_lines_.empty() && !queries_.next(first_lines_, first_line_)) {
+        throw InputError(queries_.name(), 0, "",
+                         "is empty; needed: a header and one row per query");
+      }
+      std::string_view text = first_lines_;
+      header = take_line(text);
+      first_lines_.erase(0, first_lines_.size() - text.size());
+      ++first_line_;
     }
-    std::string_view text = first_lines_;
-    const std::string header(take_line(text));
-    first_lines_.erase(0, first_lines_.size() - text.size());
-    ++first_line_;
-    return {header, queries_.name()};
+    return {header, first_line_ - 1, queries_.name()};
   }
 
   void work() {

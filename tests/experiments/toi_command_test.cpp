@@ -197,7 +197,7 @@ TEST_CASE("toi --keep-going answers bad rows as invalid, in their place", "[toi]
   const Outcome outcome = toi(
       header + "\n" + row("a") + row("b", {{"a_hx", "-1"}}) + "c,2\n" + row("d"), {"--keep-going"});
   CAPTURE(outcome.err);
-  CHECK(outcome.exit_code == 0);
+  CHECK(outcome.exit_code == 2);
   CHECK(outcome.out.find("\nb,invalid,,,,,,,\nc,invalid,,,,,,,\nd,impact,") != std::string::npos);
   CHECK(outcome.err.find("stdin:3: a_hx: ") == 0);
   CHECK(outcome.err.find("\nstdin:4: has 2 fields") != std::string::npos);
