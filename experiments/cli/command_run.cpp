@@ -5,6 +5,7 @@
 #include "experiments/cli/commands.hpp"
 #include "experiments/cli/run_options.hpp"
 #include "experiments/metrics/run_metrics.hpp"
+#include "experiments/output/atomic_file.hpp"
 #include "experiments/output/broadcast.hpp"
 #include "experiments/output/output_folder.hpp"
 #include "experiments/output/run_files.hpp"
@@ -90,6 +91,9 @@ void RunCommand::run() const {
   const Model model(scene.scene());
   if (const std::string reason = why_refused(model, choice); !reason.empty()) {
     throw InputError(model.scene().path, 0, "", reason);  // before a folder is made for it
+  }
+  if (!save.empty()) {
+    const AtomicFile writable(save);  // what is wrong shows before the run
   }
   const RunIdentity identity = run_identity(model, scene.overrides(), choice);
   const CheckpointFile begun = checkpoint(model, identity);

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstdio>
+#include <filesystem>
 #include <system_error>
 #include <utility>
 
@@ -41,9 +42,25 @@ std::string temporary_name(const std::string& path) {
   return fmt::format("{}.{}.{}.partial", path.substr(0, name), path.substr(name), ::getpid());
 }
 
+/// Where the file will be: the end of symbolic links, so that they stay. A device, a pipe or a
+/// folder is refused: renaming over one would destroy it.
+std::string target(const std::string& path) {
+  std::error_code none;
+  const std::filesystem::file_status status = std::filesystem::status(path, none);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw InputError(path, 0, "",
+                     "is not a regular file; allowed: a new file, or a file to replace");
+  }
+  if (std::filesystem::is_symlink(std::filesystem::symlink_status(path, none))) {
+    const std::filesystem::path end = std::filesystem::weakly_canonical(path, none);
+    return none ? path : end.string();
+  }
+  return path;
+}
+
 }  // namespace
 
-AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
+AtomicFile::AtomicFile(const std::string& path) : path_(target(path)) {
   // A file without a name vanishes with its process, whatever kills it.
   descriptor_ = ::open(folder(path_).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
   if (descriptor_ < 0) {  // not every file system has them

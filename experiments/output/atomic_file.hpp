@@ -10,8 +10,9 @@ namespace kairos::experiments {
 /// checked. A process that is killed leaves nothing.
 class AtomicFile {
  public:
-  /// Opens the temporary file. Throws `InputError` where that is impossible.
-  explicit AtomicFile(std::string path);
+  /// Opens the temporary file. Throws `InputError` where that is impossible, or where `path` is a
+  /// device, a pipe or a folder; a symbolic link is followed.
+  explicit AtomicFile(const std::string& path);
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
   /// Removes what was not published.

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "experiments/child_process.hpp"
 #include "experiments/output/atomic_file.hpp"
+#include "experiments/output/output_folder.hpp"
 #include "experiments/progress_bar.hpp"
 #include "experiments/run_error.hpp"
 
@@ -20,7 +21,12 @@ namespace fs = std::filesystem;
 class Workshop {
  public:
   explicit Workshop(const fs::path& beside) : path_(beside.string() + ".part") {
-    fs::create_directories(path_);
+    std::error_code error;
+    fs::create_directories(path_, error);
+    if (error) {
+      throw InputError(path_.parent_path().string(), 0, "--out",
+                       fmt::format("cannot be written into: {}", error.message()));
+    }
   }
   Workshop(const Workshop&) = delete;
   Workshop& operator=(const Workshop&) = delete;
@@ -162,7 +168,7 @@ std::size_t render_run(const Footage& footage, const Footage* beside, const Rend
   if (!fixed.camera) {  // the same for all pictures
     fixed.camera = camera_for(footage, footage.at(times.front()), footage.at(times.back()));
   }
-  fs::create_directories(folder);
+  OutputFolder(folder).publish();  // pictures follow, each whole or not at all
   ProgressBar bar("render", times.size());
   for (std::size_t k = 0; k < times.size(); ++k) {
     render_picture({&footage, times[k]}, {beside, times[k]}, fixed,
