@@ -162,7 +162,9 @@ double FreeTop::fit_error(double h) const {
 }
 
 double FreeTop::segment() const {
-  return std::pow(fit_tolerance / fit_error(1.0), 1.0 / conditions);
+  const double radian =
+      1.0 / fastest_;  // s: a second would be nothing to some tops and all to others
+  return radian * std::pow(fit_tolerance / fit_error(radian), 1.0 / conditions);
 }
 
 void FreeTop::fit(double time, double h, Motion& motion) const {
