@@ -1,6 +1,7 @@
 #include "experiments/extremes/extremes_experiment.hpp"
 
 #include "core/error.hpp"
+#include "experiments/named_method.hpp"
 #include "experiments/parallel_for.hpp"
 #include "experiments/progress_bar.hpp"
 
@@ -10,6 +11,8 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <span>
+#include <vector>
 
 namespace kairos::experiments {
 namespace {
@@ -46,28 +49,17 @@ class Watch : public Recorder {
   std::int64_t calls_ = 0;
 };
 
-struct Method {
-  std::string_view name;
-  RunChoice choice;
-};
-
-std::array<Method, 8> methods() {
-  const auto method = [](std::string_view name, const char* scheme, const char* detector) {
-    return Method{name,
-                  {.method = {scheme, "auto", detector, "newton"},
-                   .stepper = {1e-10, 1e-8},
-                   .max_substeps = 2000}};
-  };
-  std::array<Method, 8> all{
-      {{"thesis", {.method = MethodChoice::thesis()}},
-       method("original", "original", "sat"),
-       method("geometric", "geometric", "certified"),
-       method("substepped", "substepped", "sat"),
-       method("equal substeps", "substepped", "sat"),
-       method("bisected", "bisected", "certified"),
-       method("event-driven, conservative", "event-driven", "conservative-advancement"),
-       method("event-driven, certified", "event-driven", "certified")}};
-  all[4].choice.equal_substeps = true;
+std::vector<NamedMethod> methods() {
+  std::vector<NamedMethod> all = compared_methods();
+  all.back().name = "event-driven, certified";
+  all.insert(all.end() - 1,
+             {"event-driven, conservative",
+              {.method = {"event-driven", "auto", "conservative-advancement", "newton"}}});
+  all.insert(all.begin() + 1, {"original", {.method = {"original", "auto", "sat", "newton"}}});
+  for (std::size_t m = 1; m < all.size(); ++m) {
+    all[m].choice.stepper = {1e-10, 1e-8};
+    all[m].choice.max_substeps = 2000;
+  }
   return all;
 }
 
@@ -115,14 +107,14 @@ std::string explanation(const ExtremeCase& extreme, const Judged& judged) {
                             : "fig. 13: handled up to a frame late, sunk in by v h at most";
 }
 
-Table map_table(const std::vector<ExtremeCase>& cases, const std::array<Method, 8>& all,
+Table map_table(const std::vector<ExtremeCase>& cases, std::span<const NamedMethod> all,
                 const std::vector<Judged>& judged) {
   Table table{{"family", "x_name", "x", "y_name", "y", "method", "verdict", "error", "impacts",
                "reason", "explanation"},
               {}};
   for (std::size_t i = 0; i < judged.size(); ++i) {
     const ExtremeCase& c = cases[i / all.size()];
-    const Method& method = all[i % all.size()];
+    const NamedMethod& method = all[i % all.size()];
     const Judged& cell = judged[i];
     const bool explained = method.name == "thesis" && is_wrong(cell.verdict);
     table.rows.push_back({c.family, c.x_name, c.x, c.y_name,
@@ -135,7 +127,7 @@ Table map_table(const std::vector<ExtremeCase>& cases, const std::array<Method, 
   return table;
 }
 
-Table verdict_table(const std::array<Method, 8>& all, const std::vector<Judged>& judged) {
+Table verdict_table(std::span<const NamedMethod> all, const std::vector<Judged>& judged) {
   Table table{
       {"method", "cells", "right", "degraded", "wrong but reported", "wrong in silence", "hung"},
       {}};
@@ -153,7 +145,7 @@ Table verdict_table(const std::array<Method, 8>& all, const std::vector<Judged>&
 }
 
 /// What was refused or stopped, counted by the word before the colon.
-Table reason_table(const std::array<Method, 8>& all, const std::vector<Judged>& judged) {
+Table reason_table(std::span<const NamedMethod> all, const std::vector<Judged>& judged) {
   std::map<std::pair<std::string, std::string>, std::int64_t> counts;
   for (std::size_t i = 0; i < judged.size(); ++i) {
     if (judged[i].verdict == Verdict::reported) {
@@ -214,7 +206,7 @@ Judged judge(const ExtremeCase& extreme, const RunChoice& choice) {
 
 ProgramOutput run_extremes(const ExperimentSpec& spec, Size size, std::size_t threads) {
   const std::vector<ExtremeCase> cases = extreme_cases(size);
-  const std::array<Method, 8> all = methods();
+  const std::vector<NamedMethod> all = methods();
   std::vector<Judged> judged(cases.size() * all.size());
   std::vector<double> seconds(judged.size());
   {

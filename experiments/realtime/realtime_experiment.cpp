@@ -2,6 +2,7 @@
 
 #include "core/random.hpp"
 #include "experiments/metrics/metrics.hpp"
+#include "experiments/named_method.hpp"
 #include "experiments/parallel_for.hpp"
 #include "experiments/scene_library.hpp"
 #include "experiments/simulation.hpp"
@@ -18,25 +19,6 @@ namespace kairos::experiments {
 namespace {
 
 constexpr double frame = 1.0 / 60.0;  // s: what the thesis' system had to keep
-
-struct Method {
-  std::string_view name;
-  RunChoice choice;
-};
-
-std::array<Method, 6> methods() {
-  const auto method = [](std::string_view name, const char* scheme, const char* detector) {
-    return Method{name, {.method = {scheme, "auto", detector, "newton"}}};
-  };
-  std::array<Method, 6> all{{{"thesis", {.method = MethodChoice::thesis()}},
-                             method("geometric", "geometric", "certified"),
-                             method("substepped", "substepped", "sat"),
-                             method("equal substeps", "substepped", "sat"),
-                             method("bisected", "bisected", "certified"),
-                             method("event-driven", "event-driven", "certified")}};
-  all[3].choice.equal_substeps = true;
-  return all;
-}
 
 /// Seconds of work between one drawn frame and the next; gives up where real time is lost anyway.
 class FrameClock : public Recorder {
@@ -95,8 +77,8 @@ void measure_bodies(int most, ProgramOutput& output) {
   Table timings{{"bodies", "method", "status", "median_frame", "p99_frame", "worst_frame", "frames",
                  "keeps_60"},
                 {}};
-  const std::array<Method, 6> all = methods();
-  std::array<bool, 6> lost{};
+  const std::vector<NamedMethod> all = compared_methods();
+  std::vector<bool> lost(all.size(), false);
   for (int n = 4; n <= most; n *= 4) {
     const Model model(parse_scene(gas_scene(n), "gas.toml"));
     for (std::size_t m = 0; m < all.size(); ++m) {
@@ -123,7 +105,7 @@ Table work_table(int most, std::size_t threads) {
   Table table{{"bodies", "method", "status", "right_hand_sides", "overlap_tests", "toi_evaluations",
                "work_a_frame"},
               {}};
-  const std::array<Method, 6> all = methods();
+  const std::vector<NamedMethod> all = compared_methods();
   std::vector<int> counts;
   for (int n = 4; n <= most; n *= 4) {
     counts.push_back(n);
@@ -131,7 +113,7 @@ Table work_table(int most, std::size_t threads) {
   table.rows.resize(counts.size() * all.size());
   parallel_for(table.rows.size(), threads, [&](std::size_t i) {
     const int n = counts[i / all.size()];
-    const Method& method = all[i % all.size()];
+    const NamedMethod& method = all[i % all.size()];
     RunChoice choice = method.choice;
     choice.duration = 10.0 * frame;
     choice.frames = FixedFrames{frame};
@@ -161,14 +143,14 @@ Table stall_table(int repeats, std::size_t threads) {
                                              {"jitter 50 %", 0.5, 0.0},
                                              {"1 in 50 takes ten", 0.0, 0.02},
                                              {"both", 0.5, 0.02}}};
-  const std::array<Method, 6> all = methods();
+  const std::vector<NamedMethod> all = compared_methods();
   const std::array<std::string_view, 2> scenes{"bounce", "bounce-inelastic"};
   const std::vector<std::string> metrics{"max_penetration", "overlap_time", "energy_error"};
   Table table{
       {"scene", "frames", "method", "runs", "max_penetration", "overlap_time", "energy_error"}, {}};
   table.rows.resize(scenes.size() * settings.size() * all.size());
   parallel_for(table.rows.size(), threads, [&](std::size_t i) {
-    const Method& method = all[i % all.size()];
+    const NamedMethod& method = all[i % all.size()];
     const Setting& setting = settings[i / all.size() % settings.size()];
     const std::string scene(scenes[i / all.size() / settings.size()]);
     const Model model(read_scene(find_scene(scene)));
