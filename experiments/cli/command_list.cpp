@@ -1,6 +1,7 @@
 #include "core/entity.hpp"
 #include "core/error.hpp"
 #include "experiments/cli/commands.hpp"
+#include "experiments/output/csv_row.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/scene_library.hpp"
 #include "experiments/sweeps/experiment_library.hpp"
@@ -10,69 +11,91 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
-#include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace kairos::experiments {
 namespace {
 
-void list_schemes() {
-  for (const auto& scheme : schemes()) {
-    const SchemeInfo info = scheme->info();
-    fmt::print("  {:<24}{} [{}]\n", info.name, info.summary, info.source);
-  }
-}
+/// What there is of one kind: a table whose first column is the name.
+struct Listing {
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;
+};
 
+std::string yes_or_no(bool value) { return value ? "yes" : "no"; }
 /// "exact" or the order.
 std::string order(int order) { return order == 0 ? "exact" : fmt::format("{}", order); }
 
-void list_integrators() {
-  fmt::print("  {:<24}{:<10}{:<22}{:<12}{:<12}{:<10}{}\n", "", "order", "dense position/speed",
-             "symplectic", "step", "library", "source");
-  fmt::print("  {:<24}closed-form where the model allows it, a Runge-Kutta method otherwise\n",
-             "auto");
+Listing list_schemes() {
+  Listing listing{{"name", "summary", "source"}, {}};
+  for (const auto& scheme : schemes()) {
+    const SchemeInfo info = scheme->info();
+    listing.rows.push_back(
+        {std::string(info.name), std::string(info.summary), std::string(info.source)});
+  }
+  return listing;
+}
+
+Listing list_integrators() {
+  Listing listing{{"name", "order", "position_order", "velocity_order", "chooses_order",
+                   "symplectic", "step", "library", "source", "summary"},
+                  {}};
+  listing.rows.push_back({"auto", "", "", "", "", "", "", "", "",
+                          "closed-form where the model allows it, a Runge-Kutta method otherwise"});
   for (const IntegratorEntry& entry : integrators()) {
     const StepperInfo& info = entry.info;
-    const std::string most = info.variable_order ? "up to " : "";
-    fmt::print("  {:<24}{:<10}{:<22}{:<12}{:<12}{:<10}{}\n", info.name, most + order(info.order),
-               most + order(info.position_order) + " / " + order(info.velocity_order),
-               info.symplectic ? "yes" : "no",
-               info.controlled   ? "controlled"
-               : info.order == 0 ? "any"
-                                 : "fixed",
-               info.library, info.source);
+    listing.rows.push_back({std::string(info.name), order(info.order), order(info.position_order),
+                            order(info.velocity_order), yes_or_no(info.variable_order),
+                            yes_or_no(info.symplectic),
+                            info.controlled   ? "controlled"
+                            : info.order == 0 ? "any"
+                                              : "fixed",
+                            std::string(info.library), std::string(info.source), std::string()});
   }
+  return listing;
 }
 
-void list_detectors() {
+Listing list_detectors() {
+  Listing listing{{"name", "summary", "locates", "proves"}, {}};
   for (const auto& detector : detectors()) {
     const DetectorInfo info = detector->info();
-    fmt::print("  {:<24}{}{}{}\n", info.name, info.summary, info.locates ? "; locates" : "",
-               info.proves ? "; proves" : "");
+    listing.rows.push_back({std::string(info.name), std::string(info.summary),
+                            yes_or_no(info.locates), yes_or_no(info.proves)});
   }
+  return listing;
 }
 
-void list_impact_laws() {
+Listing list_impact_laws() {
+  Listing listing{{"name", "summary"}, {}};
   for (const auto& law : impact_laws()) {
-    fmt::print("  {:<24}{}\n", law->info().name, law->info().summary);
+    listing.rows.push_back({std::string(law->info().name), std::string(law->info().summary)});
   }
+  return listing;
 }
 
-void list_broad_phases() {
+Listing list_broad_phases() {
+  Listing listing{{"name"}, {}};
   for (const std::string_view name : broad_phases()) {
-    fmt::print("  {}\n", name);
+    listing.rows.push_back({std::string(name)});
   }
+  return listing;
 }
 
-void list_entities() {
+Listing list_entities() {
+  Listing listing{{"name", "summary", "source"}, {}};
   for (const EntityType& type : entity_catalogue()) {
-    fmt::print("  {:<24}{} [{}]\n", type.kind, type.summary, type.source);
+    listing.rows.push_back(
+        {std::string(type.kind), std::string(type.summary), std::string(type.source)});
   }
+  return listing;
 }
 
-void list_scenes() {
+Listing list_scenes() {
+  Listing listing{{"name", "summary"}, {}};
   for (const std::string& name : shipped_scenes()) {
     std::string summary;
     try {
@@ -80,25 +103,30 @@ void list_scenes() {
     } catch (const InputError& error) {
       summary = fmt::format("cannot be read: {}", error.what());
     }
-    fmt::print("  {:<24}{}\n", name, summary);
+    listing.rows.push_back({name, summary});
   }
+  return listing;
 }
 
-void list_experiments() {
+Listing list_experiments() {
+  Listing listing{{"name", "summary"}, {}};
   for (const std::string& name : shipped_experiments()) {
-    fmt::print("  {:<24}{}\n", name, read_experiment(find_experiment(name), Size::quick).title);
+    listing.rows.push_back({name, read_experiment(find_experiment(name), Size::quick).title});
   }
+  return listing;
 }
 
-void list_figures() {
+Listing list_figures() {
+  Listing listing{{"name", "summary"}, {}};
   for (const ThesisFigure& figure : thesis_figures()) {
-    fmt::print("  {:<24}{}\n", figure.name, figure.title);
+    listing.rows.push_back({std::string(figure.name), std::string(figure.title)});
   }
+  return listing;
 }
 
 struct Section {
   const char* name;
-  void (*list)();
+  Listing (*list)();
 };
 constexpr std::array<Section, 9> sections{{{"schemes", list_schemes},
                                            {"integrators", list_integrators},
@@ -110,21 +138,79 @@ constexpr std::array<Section, 9> sections{{{"schemes", list_schemes},
                                            {"experiments", list_experiments},
                                            {"figures", list_figures}}};
 
+/// For people: columns as wide as what is in them; a header where names alone do not say enough.
+void print_table(const Section& section, const Listing& listing) {
+  std::vector<std::vector<std::string>> lines = listing.rows;
+  if (listing.columns.size() > 3) {
+    lines.insert(lines.begin(), listing.columns);
+    lines.front().front().clear();
+  }
+  std::vector<std::size_t> widths(listing.columns.size(), 0);
+  widths.front() = 22;
+  for (const auto& line : lines) {
+    for (std::size_t k = 0; k < line.size(); ++k) {
+      widths[k] = std::max(widths[k], line[k].size());
+    }
+  }
+  fmt::print("{}\n", section.name);
+  for (const auto& line : lines) {
+    std::string text;
+    for (std::size_t k = 0; k < line.size(); ++k) {
+      text += fmt::format("  {:<{}}", line[k], widths[k]);
+    }
+    text.erase(text.find_last_not_of(' ') + 1);
+    fmt::print("{}\n", text);
+  }
+}
+
+/// For programs: all columns of one kind, or kind, name and summary of all kinds.
+void print_csv(const std::string& wanted) {
+  CsvRow row;
+  const auto print = [&row](const std::vector<std::string>& fields) {
+    for (const std::string& field : fields) {
+      row.text(field);
+    }
+    fmt::print("{}", row.finish());
+  };
+  if (wanted.empty()) {
+    print({"kind", "name", "summary"});
+  }
+  for (const Section& section : sections) {
+    const Listing listing = wanted.empty() || wanted == section.name ? section.list() : Listing{};
+    if (wanted == section.name) {
+      print(listing.columns);
+    }
+    const auto summary = std::find(listing.columns.begin(), listing.columns.end(), "summary");
+    for (const auto& fields : listing.rows) {
+      if (!wanted.empty()) {
+        print(fields);
+      } else {
+        const auto k = static_cast<std::size_t>(summary - listing.columns.begin());
+        print({section.name, fields.front(), k < fields.size() ? fields[k] : ""});
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void add_list_command(CLI::App& app) {
   const auto wanted = std::make_shared<std::string>();
+  const auto csv = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("list", "What there is to choose from");
   std::vector<std::string> names;
   for (const Section& section : sections) {
     names.emplace_back(section.name);
   }
   command->add_option("what", *wanted, "one of them only")->check(CLI::IsMember(names));
-  command->callback([wanted] {
+  command->add_flag("--csv", *csv, "as CSV, for programs; of one of them, with all columns");
+  command->callback([wanted, csv] {
+    if (*csv) {
+      return print_csv(*wanted);
+    }
     for (const Section& section : sections) {
       if (wanted->empty() || *wanted == section.name) {
-        fmt::print("{}\n", section.name);
-        section.list();
+        print_table(section, section.list());
       }
     }
   });

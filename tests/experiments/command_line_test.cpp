@@ -57,6 +57,19 @@ TEST_CASE("list names what there is to choose from", "[cli]") {
   CHECK_FALSE(contains(one.out, "thesis-euler"));
 }
 
+TEST_CASE("list --csv says the same to programs", "[cli]") {
+  const Outcome integrators = kairos_program({"list", "integrators", "--csv"});
+  REQUIRE(integrators.exit_code == 0);
+  CHECK(
+      integrators.out.starts_with("name,order,position_order,velocity_order,chooses_order,"
+                                  "symplectic,step,library,source,summary\n"));
+  CHECK(contains(integrators.out, "\nvelocity-verlet,2,2,2,no,yes,fixed,kairos,"));
+  const Outcome all = kairos_program({"list", "--csv"});
+  CHECK(all.out.starts_with("kind,name,summary\nschemes,original,"));
+  CHECK(contains(all.out, "\nintegrators,rk4,\n"));
+  CHECK(contains(all.out, "\nbroad-phases,all-pairs,\n"));
+}
+
 TEST_CASE("run prints a summary and exits with 0", "[cli]") {
   const TemporaryFolder folder;
   const std::string scene = folder.file("drop.toml", drop_scene);
