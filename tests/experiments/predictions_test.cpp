@@ -4,6 +4,7 @@
 #include "experiments/thesis/errata_runs.hpp"
 #include "experiments/thesis/phase_runs.hpp"
 #include "tests/catch.hpp"
+#include "tests/experiments/ledger_check.hpp"
 
 #include <fmt/format.h>
 
@@ -33,7 +34,7 @@ TEST_CASE("prediction 1: the original scheme gains G^2 h^2/(2m) a frame, whateve
     const double attributed =
         ledger.line(EnergyLine::truncation) + ledger.line(EnergyLine::late_impact);
     CHECK(std::abs(attributed / predicted - 1.0) <= 1e-10);
-    CHECK(std::abs(ledger.unexplained()) <= 8.0 * epsilon * ledger.flow());
+    tests::check_explained(ledger);
   }
 }
 
