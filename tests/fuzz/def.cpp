@@ -2,6 +2,7 @@
 // with a reason, or a model whose numbers are finite.
 #include "core/error.hpp"
 #include "tests/fuzz/model_check.hpp"
+#include "tests/locations.hpp"
 
 #include <string_view>
 
@@ -10,7 +11,7 @@ using namespace kairos;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   try {
-    fuzz::check(Model(parse_scene(text, KAIROS_SOURCE_DIR "/scenes/input.def")));
+    fuzz::check(Model(parse_scene(text, tests::source_path("scenes/input.def"))));
   } catch (const InputError& error) {
     fuzz::require(!error.reason().empty(), "a scene is refused without a reason");
   }
