@@ -23,8 +23,7 @@ FrameWorld::FrameWorld(const Model& model, const Method& method, const SchemeOpt
       after_(bodies_),
       given_force_(model.size(), Vector3::Zero()),
       trackers_(model.size()),
-      grasps_(model.grips().size(), Grasp::open),
-      in_hand_(model.size(), 0),
+      grasps_(model),
       paths_(model.size()),
       account_(model, ledger_) {
   for (BodyIndex i = 0; i < model.size(); ++i) {
@@ -61,7 +60,7 @@ bool FrameWorld::draw() {
     check_finite();
     account_.balance(now_, bodies_);
     trace(Stage::draw, 1.0);
-    recorder_.frame({frame_index_, now_, bodies_, ledger_, in_hand_});
+    recorder_.frame({frame_index_, now_, bodies_, ledger_, grasps_.in_hand()});
     ++cost_.frames;
   }
   const bool more = open_frame();

@@ -3,7 +3,7 @@
 #include "core/model.hpp"
 #include "core/scheme.hpp"
 #include "core/schemes/energy_account.hpp"
-#include "core/schemes/grasp.hpp"
+#include "core/schemes/grasps.hpp"
 
 #include <memory>
 #include <span>
@@ -48,7 +48,9 @@ class FrameWorld {
   [[nodiscard]] bool overlap_at(BodyIndex a, BodyIndex b, double s);
 
   /// Do the two overlap now, and is neither of them in a hand?
-  [[nodiscard]] bool overlap(BodyIndex a, BodyIndex b) { return !in_hand(a, b) && touches(a, b); }
+  [[nodiscard]] bool overlap(BodyIndex a, BodyIndex b) {
+    return !grasps_.involve(a, b) && touches(a, b);
+  }
   /// 13.5: the two exchange now what their entities and the impact law say.
   void handle(BodyIndex a, BodyIndex b) { collide(a, b, bodies_[a], bodies_[b], now_); }
 
@@ -87,9 +89,6 @@ class FrameWorld {
     void persist(Archive& archive);
   };
 
-  [[nodiscard]] bool in_hand(BodyIndex a, BodyIndex b) const {
-    return in_hand_[a] != 0 || in_hand_[b] != 0;
-  }
   [[nodiscard]] bool touches(BodyIndex a, BodyIndex b) {
     ++cost_.overlap_tests;
     return detector_.overlaps(model_.shape(a), bodies_[a].pose, model_.shape(b), bodies_[b].pose);
@@ -131,7 +130,7 @@ class FrameWorld {
   const ContactDetector& detector_;
   const ImpactLaw& law_;
   const bool law_needs_contact_;
-  const SchemeOptions& options_;
+  const SchemeOptions options_;
   Recorder& recorder_;
   const bool wants_motions_;
 
@@ -142,8 +141,7 @@ class FrameWorld {
   bool any_given_ = false;
   std::vector<TrackerMemory> trackers_;
   std::vector<BodyIndex> driven_;
-  std::vector<Grasp> grasps_;  ///< of the model's grips
-  std::vector<char> in_hand_;  ///< by body: no contacts
+  Grasps grasps_;
   std::vector<Mover> movers_;
   std::vector<std::vector<Motion>> paths_;  ///< of the proposal, per body, end to end
   double proposed_ = 0.0;

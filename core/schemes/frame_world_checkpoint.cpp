@@ -28,7 +28,7 @@ void FrameWorld::offer_checkpoint(bool last) {
 
 void FrameWorld::persist(Archive& archive) {
   archive(now_, frame_index_, last_step_, bodies_, given_force_, any_given_, trackers_, grasps_,
-          in_hand_, in_field_, ledger_, cost_);
+          in_field_, ledger_, cost_);
   for (Mover& mover : movers_) {
     archive(mover);
   }

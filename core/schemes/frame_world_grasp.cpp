@@ -10,21 +10,18 @@ inline namespace core {
 void FrameWorld::follow_hands() {
   for (std::size_t k = 0; k < model_.grips().size(); ++k) {
     const auto [hand, held] = model_.grips()[k];
-    Grasp& grasp = grasps_[k];
     const bool closed = model_.body(hand).drive->closed(now_);
-    if (grasp == Grasp::holding || closed) {
-      const bool caught = grasp != Grasp::holding;
+    if (grasps_.of(k) == Grasp::holding || closed) {
+      const bool caught = grasps_.of(k) != Grasp::holding;
       const double share = closed ? 1.0 : model_.entity(hand).release_share();
       carry(hand, held, share);
       if (caught || !closed) {
         note_grasp(closed ? EventKind::grasped : EventKind::released, hand, held);
       }
-      grasp = closed ? Grasp::holding : Grasp::leaving;
-      in_hand_[held] = 1;
+      grasps_.set(k, closed ? Grasp::holding : Grasp::leaving);
       movers_[model_.island_of(held)].carried = closed;
-    } else if (grasp == Grasp::leaving && !touches(hand, held)) {
-      grasp = Grasp::open;
-      in_hand_[held] = 0;
+    } else if (grasps_.of(k) == Grasp::leaving && !touches(hand, held)) {
+      grasps_.set(k, Grasp::open);
     }
   }
 }

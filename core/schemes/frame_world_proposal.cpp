@@ -204,7 +204,7 @@ TimeOfImpact FrameWorld::time_of_impact(BodyIndex a, BodyIndex b, double until) 
 }
 
 bool FrameWorld::swept_overlap(BodyIndex a, BodyIndex b) {
-  if (in_hand(a, b)) {
+  if (grasps_.involve(a, b)) {
     return false;
   }
   for (double s = 0.0; s < proposed_;) {
@@ -223,7 +223,7 @@ bool FrameWorld::swept_overlap(BodyIndex a, BodyIndex b) {
 }
 
 bool FrameWorld::overlap_at(BodyIndex a, BodyIndex b, double s) {
-  if (in_hand(a, b)) {
+  if (grasps_.involve(a, b)) {
     return false;
   }
   ++cost_.overlap_tests;

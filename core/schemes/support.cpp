@@ -1,5 +1,7 @@
 #include "core/schemes/support.hpp"
 
+#include "core/archive.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -69,6 +71,8 @@ int face_axis(const Quaternion& q_WB, const Vector3& normal) {
 }
 
 }  // namespace
+
+void Support::persist(Archive& archive) { archive(surface, normal); }
 
 std::optional<Support> find_support(const Model& model, BodyIndex ball, const Vector3& centre,
                                     BodyIndex surface, const Motion& surface_motion, double s,
