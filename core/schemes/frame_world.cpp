@@ -118,7 +118,9 @@ void FrameWorld::scatter(const Mover& mover) {
 void FrameWorld::begin_step(Mover& mover, Instant t) {
   for (std::size_t k = 0; k < mover.island.bodies.size(); ++k) {
     const BodyIndex i = mover.island.bodies[k];
-    mover.island.constant_force[k] = model_.gravity_force(i) + given_force_[i];
+    const Vector3 force = model_.gravity_force(i) + given_force_[i];
+    mover.jumped = mover.jumped || force != mover.island.constant_force[k];
+    mover.island.constant_force[k] = force;
   }
   if (mover.jumped) {
     mover.stepper->restart(mover.island, t, mover.states);
@@ -126,15 +128,20 @@ void FrameWorld::begin_step(Mover& mover, Instant t) {
   }
 }
 
-bool FrameWorld::step(Mover& mover, Instant t, double h, double& advanced) {
-  const StepResult result = mover.stepper->step(mover.island, t, h, mover.states);
+bool FrameWorld::step(Mover& mover, double& done, double until) {
+  const StepResult result =
+      mover.stepper->step(mover.island, now_ + done, until - done, mover.states);
   ++cost_.steps;
-  if (!result.ok || !(result.advanced > 0.0)) {
-    stop("integrator: " + std::string(result.reason));
+  const double reached = done + result.advanced;
+  if (!result.ok || !(reached > done)) {
+    stop(result.ok ? "integrator: its steps are too short to get on"
+                   : "integrator: " + std::string(result.reason));
     return false;
   }
-  advanced = result.advanced;
-  mover.last_step = advanced;
+  // What rounding leaves of the time is no step of its own: a solver may never get through it.
+  constexpr double roundoff = 4.0 * std::numeric_limits<double>::epsilon();
+  done = until - reached > roundoff * until ? reached : until;
+  mover.last_step = result.advanced;
   return true;
 }
 
@@ -147,15 +154,15 @@ void FrameWorld::advance(double h) {
     gather(mover);
     begin_step(mover, now_);
     const bool dense = wants_motions_ || !mover.island.forces.empty();
-    double advanced = 0.0;
-    for (double done = 0.0; done < h; done += advanced) {
-      if (!step(mover, now_ + done, h - done, advanced)) {
+    for (double done = 0.0; done < h;) {
+      const Instant start = now_ + done;
+      if (!step(mover, done, h)) {
         break;
       }
       if (dense) {
         mover.stepper->dense_output(mover.motions);
       }
-      book_step(mover, now_ + done, advanced, true);
+      book_step(mover, start, mover.last_step, true);
       scatter(mover);
     }
   }

@@ -100,7 +100,10 @@ class FrameWorld {
   void gather(Mover& mover) const;
   void scatter(const Mover& mover);
   void begin_step(Mover& mover, Instant t);
-  bool step(Mover& mover, Instant t, double h, double& advanced);
+  /// One step of the stepper, from `done` on and at most to `until` (s, from `now_` on); false: it
+  /// failed, and the run is stopped. Moves `done` on; its length is
+  /// `Mover::last_step`.
+  bool step(Mover& mover, double& done, double until);
   void fly(Mover& mover, double from, double to);
   void book_step(Mover& mover, Instant t, double h, bool replayable);
   [[nodiscard]] double replay(Mover& mover, double h);

@@ -39,9 +39,8 @@ void FrameWorld::propose(double h) {
 /// Extends the paths of an island from `from` to `to` of the proposal.
 void FrameWorld::fly(Mover& mover, double from, double to) {
   begin_step(mover, now_ + from);
-  double advanced = 0.0;
-  for (double done = from; done < to; done += advanced) {
-    if (!step(mover, now_ + done, to - done, advanced)) {
+  for (double done = from; done < to;) {
+    if (!step(mover, done, to)) {
       return;
     }
     mover.stepper->dense_output(mover.motions);
