@@ -15,6 +15,7 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace kairos::experiments {
@@ -195,21 +196,27 @@ void print_csv(const std::string& wanted) {
 }  // namespace
 
 void add_list_command(CLI::App& app) {
-  const auto wanted = std::make_shared<std::string>();
+  const auto words = std::make_shared<std::vector<std::string>>();
   const auto csv = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("list", "What there is to choose from");
-  std::vector<std::string> names;
+  std::vector<std::string_view> names;
   for (const Section& section : sections) {
     names.emplace_back(section.name);
   }
-  command->add_option("what", *wanted, "one of them only")->check(CLI::IsMember(names));
+  command->add_option("what", *words, fmt::format("one of them only: {}", fmt::join(names, ", ")));
   command->add_flag("--csv", *csv, "as CSV, for programs; of one of them, with all columns");
-  command->callback([wanted, csv] {
+  command->callback([words, csv, names] {
+    std::string wanted = fmt::format("{}", fmt::join(*words, "-"));
+    std::replace(wanted.begin(), wanted.end(), ' ', '-');  // impact laws, "impact laws"
+    if (!wanted.empty() && std::find(names.begin(), names.end(), wanted) == names.end()) {
+      throw CLI::ValidationError("list",
+                                 fmt::format("'{}' is none of {}", wanted, fmt::join(names, ", ")));
+    }
     if (*csv) {
-      return print_csv(*wanted);
+      return print_csv(wanted);
     }
     for (const Section& section : sections) {
-      if (wanted->empty() || *wanted == section.name) {
+      if (wanted.empty() || wanted == section.name) {
         print_table(section, section.list());
       }
     }

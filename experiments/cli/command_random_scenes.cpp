@@ -102,7 +102,7 @@ void add_random_scenes_command(CLI::App& app) {
   CLI::App* random = app.add_subcommand(
       "random-scenes", "Run random valid scenes, watch for NaN, overlap, hangs; shrink what fails");
   random->add_option("--count", command->survey.count, "how many")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(1, 1000000000))
       ->capture_default_str();
   random->add_option("--seed", command->survey.seed, "of the scenes")->capture_default_str();
   random->add_option("--first", command->survey.first, "number of the first one")

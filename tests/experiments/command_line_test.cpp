@@ -57,6 +57,17 @@ TEST_CASE("list names what there is to choose from", "[cli]") {
   CHECK_FALSE(contains(one.out, "thesis-euler"));
 }
 
+TEST_CASE("list takes what has two words in any spelling", "[cli]") {
+  for (const auto& [first, second] : {std::pair{"impact", "laws"}, std::pair{"broad", "phases"}}) {
+    const std::string both = first + std::string("-") + second;
+    const Outcome hyphen = kairos_program({"list", both});
+    REQUIRE(hyphen.exit_code == 0);
+    CHECK(hyphen.out.starts_with(both + "\n"));
+    CHECK(kairos_program({"list", first, second}).out == hyphen.out);
+    CHECK(kairos_program({"list", first + std::string(" ") + second}).out == hyphen.out);
+  }
+}
+
 TEST_CASE("list --csv says the same to programs", "[cli]") {
   const Outcome integrators = kairos_program({"list", "integrators", "--csv"});
   REQUIRE(integrators.exit_code == 0);
