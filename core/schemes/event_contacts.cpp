@@ -42,7 +42,13 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double patience,
   if (!decided && approach >= 0.0 && patience > 0.0) {
     return look_again(a, b, t, patience);
   }
-  apply_law(event);
+  Vector3 unused_a = Vector3::Zero();  // solids that push (none does) would need fields
+  Vector3 unused_b = Vector3::Zero();
+  const ImpactEnergy energy =
+      run_.exchange(event, motions_.now(a), motions_.now(b), unused_a, unused_b);
+  run_.ledger.add(EnergyLine::restitution_loss, energy.restitution_loss);
+  run_.ledger.add(EnergyLine::driven_work, energy.driven_work);
+  run_.ledger.add(EnergyLine::conveyor_and_hand, energy.conveyor_and_hand);
   const double rebound = normal_velocity(event.contact, event.after_a, event.after_b);
   const double scale =
       std::abs(approach) + event.after_a.twist.linear.norm() + event.after_b.twist.linear.norm();
@@ -85,36 +91,6 @@ void EventContacts::look_again(BodyIndex a, BodyIndex b, Instant t, double patie
                                     run_.names(a, b)));
   }
   run_.agenda.push(t + patience, Due::recheck, a, b);
-}
-
-/// The impact law changes `now` of the two; told, counted and booked.
-void EventContacts::apply_law(Event& event) {
-  const auto [a, b] = std::pair{event.a, event.b};
-  event.before_a = motions_.now(a);
-  event.before_b = motions_.now(b);
-  Vector3 unused_a = Vector3::Zero();  // solids that push (none does) would need fields
-  Vector3 unused_b = Vector3::Zero();
-  const ImpactBody body_a{run_.model.body(a), run_.model.inertia(a), motions_.now(a), unused_a};
-  const ImpactBody body_b{run_.model.body(b), run_.model.inertia(b), motions_.now(b), unused_b};
-  const ImpactEnergy energy = run_.law.apply(event.contact, body_a, body_b);
-  event.after_a = motions_.now(a);
-  event.after_b = motions_.now(b);
-  run_.ledger.add(EnergyLine::restitution_loss, energy.restitution_loss);
-  run_.ledger.add(EnergyLine::driven_work, energy.driven_work);
-  run_.ledger.add(EnergyLine::conveyor_and_hand, energy.conveyor_and_hand);
-  if (run_.options.roundoff) {
-    run_.ledger.add(EnergyLine::roundoff, run_.law.roundoff(event.contact, body_a, body_b,
-                                                            event.before_a, event.before_b));
-  }
-  for (const auto& [i, before, after] :
-       {std::tuple{a, &event.before_a, &event.after_a}, {b, &event.before_b, &event.after_b}}) {
-    if (run_.model.is_free(i) && after->pose.position != before->pose.position) {
-      run_.account.moved(i, after->pose.position - before->pose.position);
-    }
-  }
-  ++run_.cost.impacts;
-  ++run_.cost.events;
-  run_.recorder.event(event);
 }
 
 /// After an impact: rest where the hop is too small to tell, stop where hops accumulate without a

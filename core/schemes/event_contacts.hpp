@@ -40,7 +40,6 @@ class EventContacts {
 
   [[nodiscard]] Contact contact_at(BodyIndex a, BodyIndex b, Instant t, double patience) const;
   void look_again(BodyIndex a, BodyIndex b, Instant t, double patience);
-  void apply_law(Event& event);
   void land(BodyIndex a, BodyIndex b, const Contact& contact, Instant t);
   void settle(BodyIndex ball, const Support& support, double pressing, double e, Instant t);
   void resume_support(BodyIndex i, Instant t);

@@ -101,8 +101,7 @@ void EventMotions::next_segment(Flow& flow, Instant t) {
     flow.launched = flow.states;
     flow.roundoff = 0.0;
   }
-  const double longest =
-      run_.options.step > 0.0 ? run_.options.step : mean_frame_duration(run_.options.frames);
+  const double longest = run_.options.step > 0.0 ? run_.options.step : run_.mean_frame;
   // A closed form has no end of its own.
   const double h =
       flow.exact ? std::numeric_limits<double>::infinity() : std::min(run_.epoch, longest);
@@ -319,11 +318,10 @@ double EventMotions::new_roundoff(Flow& flow, Instant t) {
 // --- What is told ------------------------------------------------------------------------------
 
 void EventMotions::note(EventKind kind, BodyIndex a, BodyIndex b, Instant t) {
-  ++run_.cost.events;
   Event event{.time = t, .kind = kind, .a = a, .b = b};
   event.before_a = event.after_a = at(a, t);
   event.before_b = event.after_b = at(b, t);
-  run_.recorder.event(event);
+  run_.note(event);
 }
 
 std::int64_t EventMotions::evaluations() const {

@@ -15,16 +15,14 @@ EventWorld::EventWorld(const Model& model, const Method& method, const SchemeOpt
       predictor_(run_, motions_, grasps_, method),
       contacts_(run_, motions_, predictor_),
       hands_(run_, motions_, predictor_, contacts_, grasps_),
-      drawn_(model.initial_state()),
-      end_(Instant{} + options.duration) {
-  recorder.begin(model);
-}
+      clock_(run_.options),
+      drawn_(model.initial_state()) {}
 
 bool EventWorld::begin() {
   if (!run_.options.resume.empty()) {
     Archive archive(run_.options.resume);
     persist(archive);
-    return open_frame(run_.time);
+    return open_frame();
   }
   begin_epoch(Instant{});
   motions_.begin();
@@ -105,60 +103,37 @@ void EventWorld::end_segment(BodyIndex i, Instant t) {
 }
 
 bool EventWorld::draw() {
-  const Instant t = stopped() ? run_.stopped_at : next_frame_;
-  run_.time = t;
-  motions_.book_all(t);
+  run_.time = stopped() ? run_.stopped_at : clock_.next();
+  motions_.book_all(run_.time);
   for (BodyIndex i = 0; i < run_.model.size(); ++i) {
-    drawn_[i] = run_.model.mobility(i) == Mobility::fixed ? motions_.now(i) : motions_.at(i, t);
+    drawn_[i] =
+        run_.model.mobility(i) == Mobility::fixed ? motions_.now(i) : motions_.at(i, run_.time);
   }
-  run_.account.balance(t, drawn_);
+  run_.account.balance(run_.time, drawn_);
   run_.recorder.stage(Stage::draw, 1.0);
-  run_.recorder.frame({frame_index_, t, drawn_, run_.ledger, grasps_.in_hand()});
+  run_.recorder.frame({clock_.index(), run_.time, drawn_, run_.ledger, grasps_.in_hand()});
   ++run_.cost.frames;
-  return !stopped() && open_frame(t);
+  return !stopped() && open_frame();
 }
 
-/// The frame that follows the one drawn at t; false where the run ends.
-bool EventWorld::open_frame(Instant t) {
-  const double left = end_ - t;
-  const double frame = frame_duration(run_.options.frames, frame_index_);
-  const bool over = left <= 1e-9 * frame;  // a remainder that only rounding left over
-  if (whole_) {
-    offer_checkpoint(t, over || frame >= left);
+/// The frame that follows the one drawn last; false where the run ends.
+bool EventWorld::open_frame() {
+  clock_.look(run_.time);
+  if (clock_.whole()) {
+    run_.offer_checkpoint(clock_.last(), [this](Archive& archive) { persist(archive); });
   }
-  ++frame_index_;
-  if (over) {
-    return false;
-  }
-  whole_ = whole_ && frame < left;
-  next_frame_ = frame < left ? t + frame : end_;
-  return true;
+  return clock_.advance();
 }
 
 RunResult EventWorld::result() && {
   run_.cost.right_hand_sides += motions_.evaluations();
-  return {stopped() ? RunStatus::stopped : RunStatus::completed,
-          std::move(run_.reason),
-          run_.time,
-          std::move(drawn_),
-          run_.ledger,
-          run_.cost};
+  return std::move(run_).result(std::move(drawn_));
 }
 
-// --- What a run needs to go on, between a frame that was drawn and the next ----------------------
-
-void EventWorld::offer_checkpoint(Instant t, bool last) {
-  if (run_.options.keeper == nullptr || !run_.options.keeper->wants(t, last)) {
-    return;
-  }
-  Archive archive;
-  persist(archive);
-  run_.options.keeper->keep(t, archive.bytes());
-}
-
+/// What a run needs to go on, between a frame that was drawn and the next.
 void EventWorld::persist(Archive& archive) {
-  archive(run_.time, run_.epoch_end, frame_index_, drawn_, grasps_, run_.agenda, run_.ledger,
-          run_.cost, motions_, predictor_, contacts_);
+  archive(run_.time, run_.epoch_end, clock_, drawn_, grasps_, run_.agenda, run_.ledger, run_.cost,
+          motions_, predictor_, contacts_);
   run_.recorder.persist(archive);
 }
 

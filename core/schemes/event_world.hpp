@@ -4,6 +4,7 @@
 #include "core/schemes/event_hands.hpp"
 #include "core/schemes/event_motions.hpp"
 #include "core/schemes/event_predictor.hpp"
+#include "core/schemes/frame_clock.hpp"
 #include "core/schemes/grasps.hpp"
 
 namespace kairos {
@@ -25,7 +26,7 @@ class EventWorld {
   [[nodiscard]] bool begin();
   [[nodiscard]] bool stopped() const { return run_.stopped(); }
   /// Whether something is due before the next frame is drawn.
-  [[nodiscard]] bool due() const { return run_.agenda.due_before(next_frame_); }
+  [[nodiscard]] bool due() const { return run_.agenda.due_before(clock_.next()); }
   /// Takes the earliest event; stale ones change nothing.
   void take();
   /// Draws the frame that is due, or where the run stopped; false when it was the last.
@@ -36,8 +37,7 @@ class EventWorld {
   void begin_epoch(Instant t);
   void next_epoch(Instant t);
   void end_segment(BodyIndex i, Instant t);
-  bool open_frame(Instant t);
-  void offer_checkpoint(Instant t, bool last);
+  bool open_frame();
   void persist(Archive& archive);
 
   EventRun run_;
@@ -47,11 +47,8 @@ class EventWorld {
   EventContacts contacts_;
   EventHands hands_;
 
+  FrameClock clock_;
   State drawn_;
-  Instant end_;
-  Instant next_frame_;
-  std::int64_t frame_index_ = 0;
-  bool whole_ = true;  ///< no frame was cut short by the end of the run
 };
 
 }  // namespace core
