@@ -43,7 +43,7 @@ def slope(line):
 
 def three_ways(data, figures):
     rows = data.table("rk4", "runs")
-    figure, panel = plt.subplots(figsize=(5.4, 4.2))
+    figure, panel = plt.subplots(figsize=(6.2, 4.6))
     methods = unique(row["method"] for row in rows)
     for method, order in zip(methods, (1, 2, 4)):
         line = root_mean_square([row for row in rows if row["method"] == method])
@@ -69,31 +69,42 @@ def guide(panel, line, order):
 def all_integrators(data, figures):
     ways = [("unlocated", "not located"), ("linear", "located linearly"),
             ("dense", "on the dense output")]
-    figure, panels = plt.subplots(1, 3, figsize=(13.2, 4.8), sharex=True, sharey=True)
-    slopes = {}
+    tables = {sweep: data.table(sweep, "runs") for sweep, _ in ways}
+    methods = unique(row["method"] for row in tables["dense"])
+    lines = {sweep: {method: root_mean_square([r for r in rows if r["method"] == method])
+                     for method in methods} for sweep, rows in tables.items()}
+    slopes = {method: [slope(lines[sweep][method]) for sweep, _ in ways] for method in methods}
+    looks = looks_by_order({method: found[-1] for method, found in slopes.items()})
+    figure, panels = plt.subplots(1, 3, figsize=(13.2, 5.6), sharex=True, sharey=True)
     for panel, (sweep, title) in zip(panels, ways):
-        rows = data.table(sweep, "runs")
-        methods = unique(row["method"] for row in rows)
-        for i, method in enumerate(methods):
-            line = root_mean_square([row for row in rows if row["method"] == method])
-            look = style.look(method, methods) | {"linewidth": 1.0, "markersize": 3.5}
-            look["linestyle"] = style.DASHES[i // len(style.COLOURS)]
-            slopes.setdefault(method, []).append(slope(line))
-            look["label"] = "_" + method
-            panel.plot([p[0] for p in line], [p[1] for p in line], **look)
+        for method in methods:
+            line = lines[sweep][method]
+            panel.plot([p[0] for p in line], [p[1] for p in line], **looks[method])
         finish(panel)
         panel.set_title(title)
     panels[0].set_ylim(1e-15, 1e2)
     for panel in panels[1:]:
         panel.set_ylabel("")
-    for handle, (method, found) in zip(panels[0].get_lines(), slopes.items()):
-        handle.set_label(f"{method}: " + ", ".join(f"{x:.1f}" if x else "–" for x in found))
-    panels[2].legend(panels[0].get_lines(), [h.get_label() for h in panels[0].get_lines()],
-                     loc="center left", bbox_to_anchor=(1.02, 0.5), fontsize=7.5,
-                     title="slopes: not located, linear, dense", title_fontsize=8)
+    names = [f"{method}: " + ", ".join(f"{x:.1f}" if x else "–" for x in slopes[method])
+             for method in methods]
+    panels[2].legend(panels[2].get_lines(), names, loc="center left", bbox_to_anchor=(1.02, 0.5),
+                     fontsize=9.5, title="slopes: not located,\nlinearly, on the dense output")
     figures.save(figure, "order_all",
-                 "The same for every integrator with a fixed step. The legend tells the slopes of "
-                 "the three panels; a dash: below roundoff.")
+                 "The same for every integrator with a fixed step; a colour is an order on the "
+                 "dense output. The legend tells the slopes of the three panels; a dash: below "
+                 "roundoff.")
+
+
+def looks_by_order(orders):
+    """A colour per order (slope, rounded), a marker and a dash per method of that order."""
+    colours = dict(zip((1, 2, 3, 4, 5, 6, 8), style.COLOURS))
+    groups = {}
+    for method, found in orders.items():
+        groups.setdefault(round(found) if found else None, []).append(method)
+    return {method: {"color": colours.get(order, style.COLOURS[-1]), "marker": style.MARKERS[i],
+                     "linestyle": style.DASHES[i], "markerfacecolor": "white", "linewidth": 1.2,
+                     "markeredgewidth": 1.1}
+            for order, group in groups.items() for i, method in enumerate(group)}
 
 
 def finish(panel):

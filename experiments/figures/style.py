@@ -51,10 +51,11 @@ def legend_below(figure, axes, columns=3):
     for axis in axes:
         for handle, label in zip(*axis.get_legend_handles_labels()):
             seen.setdefault(label, handle)
+    inches = 0.1 + 0.19 * -(-len(seen) // columns)  # of the legend; 3.6 does not make room for it
     figure.legend(seen.values(), seen.keys(), loc="outside lower center"
                   if matplotlib.__version_info__ >= (3, 7) else "lower center", ncol=columns,
                   **({} if matplotlib.__version_info__ >= (3, 7)
-                     else {"bbox_to_anchor": (0.5, -0.02 - 0.055 * -(-len(seen) // columns))}))
+                     else {"bbox_to_anchor": (0.5, -inches / figure.get_figheight())}))
 
 
 class Figures:

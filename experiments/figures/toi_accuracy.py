@@ -1,6 +1,7 @@
 """Error and cost of times of impact against the tolerance asked for."""
 
 import matplotlib.pyplot as plt
+from matplotlib.ticker import LogLocator, NullFormatter
 
 import style
 from data import pick, points, unique
@@ -31,6 +32,9 @@ def draw(data, figures):
     panels[0].set_ylabel("error of the time of impact / s")
     panels[0].set_title("How far off: median, and worst (filled)")
     panels[1].set_ylabel("evaluations of one query")
+    panels[1].yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    panels[1].yaxis.set_major_formatter("{x:g}")
+    panels[1].yaxis.set_minor_formatter(NullFormatter())
     panels[1].set_title("What it costs (FCL does not tell)")
     style.legend_below(figure, panels[:1], columns=4)
     figures.save(figure, "toi_accuracy", data.entry("caption"))

@@ -1,6 +1,7 @@
 """Error against counted work and against measured time, a panel per kind of error; failures are
 drawn as failures, above the frame."""
 
+import math
 import os
 
 import matplotlib.pyplot as plt
@@ -35,11 +36,29 @@ def by_work(figures, scene, rows, reference):
             panel.axhline(reference["position_uncertainty"], color="#888888", linewidth=0.8)
         panel.set_title(label.split(" / ")[0].split(",")[0])
         panel.set_ylabel(label)
+        label_zero(panel, [row[error] for row in rows])
     for panel in panels[1]:
         panel.set_xlabel("counted work: right-hand sides, overlap tests, gap evaluations")
     style.legend_below(figure, panels.flat, columns=4)
     figures.save(figure, f"{scene}-work", f"{scene}: {reference['compared']}. Reference: "
                  f"{reference['reference']}. Marks on the upper edge: refused, stopped or too long.")
+
+
+def label_zero(panel, errors):
+    """What is drawn at FLOOR is 0: the axis says so, the panel if there is nothing else."""
+    errors = [error for error in errors if error is not None]
+    if not any(error <= FLOOR for error in errors):
+        return
+    panel.axhline(FLOOR, color="#888888", linewidth=0.8, linestyle=":")
+    if max(errors) <= FLOOR:
+        panel.set_ylim(FLOOR / 10, FLOOR * 10)
+        panel.set_yticks([FLOOR], ["0"])
+        panel.text(0.5, 0.7, "0 for every method", transform=panel.transAxes, ha="center")
+    else:
+        panel.set_ylim(bottom=FLOOR / 3)
+        ticks = [tick for tick in panel.get_yticks() if 10 * FLOOR <= tick <= panel.get_ylim()[1]]
+        panel.set_yticks([FLOOR] + ticks, ["0"] + [f"$10^{{{math.log10(t):.0f}}}$" for t in ticks])
+    panel.minorticks_off()
 
 
 def by_time(figures, scene, rows, times):

@@ -1,4 +1,5 @@
-"""Error against counted work: a panel per problem, a line per method, failures at the upper edge."""
+"""Error against counted work: a row per problem, a column per family of methods, a line per method,
+failures at the upper edge."""
 
 import math
 
@@ -11,19 +12,29 @@ ASTRAY = 0.3  # m: such an error is no answer
 FLOOR = 1e-16
 
 PROBLEMS = [("flight", "flight through air"), ("spring", "ball, spring and wall"),
-            ("stroke", "table-tennis stroke"), ("tumbling", "tumbling box"),
-            ("billiard", "billiards")]
+            ("stroke", "table-tennis stroke"), ("tumbling", "tumbling box")]
+FAMILIES = [("fixed step", ("explicit-euler", "symplectic-euler", "velocity-verlet", "rk4",
+                            "suzuki4", "rkmk4")),
+            ("controlled, one step", ("dopri5", "gsl-rkf45", "gsl-rk8pd", "gsl-bsimp", "arkode-4",
+                                      "arkode-6", "arkode-8")),
+            ("multistep, and other detectors", ())]  # and whatever else the tables have
 
 
 def draw(data, figures):
     work(data, figures, "work_precision_rhs", "right-hand sides",
-         lambda row: row["right_hand_sides"], PROBLEMS[:4],
+         lambda row: row["right_hand_sides"], PROBLEMS,
          "Error of position at the end against right-hand sides evaluated; one line per method, "
-         "from little effort to much. Crosses at the upper edge: runs that failed or went astray.")
+         "from little effort to much, grey: those of the other columns. Crosses at the upper edge: "
+         "runs that failed or went astray.")
     work(data, figures, "work_precision_looks", "overlap tests and gap evaluations",
-         lambda row: (row["overlap_tests"] or 0) + (row["toi_evaluations"] or 0), PROBLEMS[1:],
+         looks, PROBLEMS[1:],
          "The same against looks at the geometry: overlap tests, and evaluations of gaps while "
          "impacts are located. Problems with impacts only.")
+    schemes(data, figures)
+
+
+def looks(row):
+    return (row["overlap_tests"] or 0) + (row["toi_evaluations"] or 0)
 
 
 def error(row):
@@ -34,35 +45,70 @@ def error(row):
 
 
 def work(data, figures, name, label, cost, problems, caption):
-    columns = 2
-    lines = -(-len(problems) // columns)
     tables = {sweep: data.table(sweep, "runs") for sweep, _ in problems}
-    every = unique(row["method"] for rows in tables.values() for row in rows
-                   if row["method"] != "reference")
-    figure, panels = plt.subplots(lines, columns, figsize=(10.5, 3.9 * lines))
-    for panel, (sweep, title) in zip(panels.flat, problems):
-        for i, method in enumerate(every):
-            rows = [row for row in tables[sweep] if row["method"] == method]
-            if rows:
-                draw_method(panel, rows, cost, look(method, i))
-        panel.set_xscale("log")
-        panel.set_yscale("log")
-        panel.set_ylim(FLOOR / 2, 1.0)
-        panel.set_xlabel(label)
-        panel.set_ylabel("error of position / m")
-        panel.set_title(title)
-    for panel in list(panels.flat)[len(problems):]:
-        panel.set_visible(False)
-    style.legend_below(figure, panels.flat, columns=5)
+    families = grouped(unique(row["method"] for rows in tables.values() for row in rows
+                              if row["method"] != "reference"))
+    figure, panels = plt.subplots(len(problems), len(families), sharex="row", sharey=True,
+                                  figsize=(11.4, 2.7 * len(problems) + 1.4))
+    for line, (sweep, title) in zip(panels, problems):
+        for panel, (family, methods) in zip(line, families):
+            for others in (True, False):
+                draw_family(panel, tables[sweep], families, methods, cost, others)
+            panel.set_xscale("log")
+            panel.set_yscale("log")
+            panel.set_ylim(FLOOR / 2, 1.0)
+            panel.set_title(title, fontweight="normal")
+        line[0].set_ylabel("error of position / m")
+    for top, bottom, (family, methods) in zip(panels[0], panels[-1], families):
+        bottom.set_xlabel(label)
+        handles = [top.plot([], [], **look(method, methods))[0] for method in methods]
+        top.legend(handles, methods, loc="lower left", bbox_to_anchor=(-0.02, 1.12), fontsize=9.5,
+                   title=family, title_fontproperties={"weight": "bold", "size": 10.5},
+                   ncol=2, columnspacing=0.8, handlelength=1.7, handletextpad=0.5, alignment="left")
     figures.save(figure, name, caption)
 
 
-def look(method, i):
-    """More methods than colours: the dashes tell the rounds apart."""
-    return {"color": style.COLOURS[i % len(style.COLOURS)],
-            "marker": style.MARKERS[i % len(style.MARKERS)],
-            "linestyle": style.DASHES[i // len(style.COLOURS)], "markerfacecolor": "white",
-            "markeredgewidth": 1.1, "linewidth": 1.1, "label": method}
+def schemes(data, figures):
+    """Billiards need no integrator: there the schemes differ."""
+    rows = [row for row in data.table("billiard", "runs") if row["method"] != "reference"]
+    methods = unique(row["method"] for row in rows)
+    figure, panel = plt.subplots(figsize=(7.2, 4.4))
+    for method in methods:
+        draw_method(panel, [row for row in rows if row["method"] == method], looks,
+                    style.look(method, methods))
+    panel.set_xscale("log")
+    panel.set_yscale("log")
+    panel.set_ylim(FLOOR / 2, 1.0)
+    panel.set_xlabel("overlap tests and gap evaluations")
+    panel.set_ylabel("error of position / m")
+    panel.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=9.5)
+    figures.save(figure, "work_precision_schemes",
+                 "Billiards: error of position at the end against looks at the geometry, a line "
+                 "per scheme. Crosses at the upper edge: runs that failed or went astray.")
+
+
+def grouped(methods):
+    """The families with the methods that there are; the last takes all that no other has."""
+    named = {method for _, members in FAMILIES for method in members}
+    *first, (rest, _) = FAMILIES
+    return ([(family, [m for m in members if m in methods]) for family, members in first] +
+            [(rest, [m for m in methods if m not in named])])
+
+
+def draw_family(panel, rows, families, methods, cost, others):
+    """The lines of `methods`, or those of all others in grey."""
+    for method in (m for _, members in families for m in members):
+        of_method = [row for row in rows if row["method"] == method]
+        if of_method and others and method not in methods:
+            draw_method(panel, of_method, cost, {"color": "#dddddd", "linewidth": 0.9, "zorder": 1})
+        elif of_method and not others and method in methods:
+            draw_method(panel, of_method, cost, look(method, methods))
+
+
+def look(method, methods):
+    i = methods.index(method)
+    return {"color": style.COLOURS[i], "marker": style.MARKERS[i], "linestyle": style.DASHES[i],
+            "markerfacecolor": "white", "markeredgewidth": 1.1, "linewidth": 1.3}
 
 
 def draw_method(panel, rows, cost, drawn):
@@ -76,7 +122,6 @@ def draw_method(panel, rows, cost, drawn):
         else:
             good.append((c, max(e, FLOOR)))
     panel.plot([p[0] for p in good], [p[1] for p in good], **drawn)
-    if not bad:
-        return
-    panel.plot(bad, [0.7] * len(bad), linestyle="none", marker="x", color=drawn["color"],
-               markersize=5, clip_on=False)
+    if bad and "marker" in drawn:
+        panel.plot(bad, [0.7] * len(bad), linestyle="none", marker="x", color=drawn["color"],
+                   markersize=6, clip_on=False)

@@ -7,7 +7,8 @@ from thesis import aabbs
 
 def draw(data, figures):
     examples = aabbs.examples(data)
-    figure, panels = plt.subplots(2, 2, figsize=(8.8, 9.6))
+    with plt.rc_context({"figure.constrained_layout.hspace": 0.14}):  # below the lists of answers
+        figure, panels = plt.subplots(2, 2, figsize=(8.8, 10.2))
     panels = list(panels.flat)
     for panel, (name, title) in zip(panels, (("both axes", "Both axes: they overlap"),
                                              ("cross", "A cross: no corner in the other"),
