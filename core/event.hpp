@@ -26,8 +26,8 @@ struct Event {
   EventKind kind = EventKind::impact;
   BodyIndex a = 0;
   BodyIndex b = 0;
-  Contact contact{};
-  BodyState before_a{}, after_a{};  ///< empty for fields and hands
+  Contact contact{};                ///< of an impact whose law needs it; otherwise zeros
+  BodyState before_a{}, after_a{};  ///< alike unless the event is an impact
   BodyState before_b{}, after_b{};
 };
 

@@ -97,14 +97,13 @@ void FrameContacts::meet_field(BodyIndex a, BodyIndex b) {
     }
   }
   in_field_.push_back({field, body, true});
-  run_.note({.time = run_.time, .kind = EventKind::field_entered, .a = field, .b = body});
+  run_.tell(EventKind::field_entered, field, body);
 }
 
 void FrameContacts::tell_fields_left() {
   for (const FieldContact& inside : in_field_) {
     if (!inside.seen) {
-      run_.note(
-          {.time = run_.time, .kind = EventKind::field_left, .a = inside.field, .b = inside.body});
+      run_.tell(EventKind::field_left, inside.field, inside.body);
     }
   }
   std::erase_if(in_field_, [](const FieldContact& inside) { return !inside.seen; });

@@ -12,8 +12,7 @@ void FrameHands::follow() {
       const bool caught = grasps_.of(k) != Grasp::holding;
       carry(grip, closed ? 1.0 : run_.model.entity(hand).release_share());
       if (caught || !closed) {
-        const EventKind kind = closed ? EventKind::grasped : EventKind::released;
-        run_.note({.time = run_.time, .kind = kind, .a = hand, .b = held});
+        run_.tell(closed ? EventKind::grasped : EventKind::released, hand, held);
       }
       grasps_.set(k, closed ? Grasp::holding : Grasp::leaving);
       motions_.set_carried(held, closed);

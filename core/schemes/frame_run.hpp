@@ -21,6 +21,13 @@ struct FrameRun : SchemeRun {
     ++cost.overlap_tests;
     return detector.overlaps(model.shape(a), bodies[a].pose, model.shape(b), bodies[b].pose);
   }
+  /// Now something begins or ends between the two; their states do not jump.
+  void tell(EventKind kind, BodyIndex a, BodyIndex b) {
+    Event event{.time = time, .kind = kind, .a = a, .b = b};
+    event.before_a = event.after_a = bodies[a];
+    event.before_b = event.after_b = bodies[b];
+    note(event);
+  }
   void forget_given_forces() {
     if (any_given) {
       std::fill(given_force.begin(), given_force.end(), Vector3::Zero());
