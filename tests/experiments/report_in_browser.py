@@ -4,8 +4,8 @@
 usage: report_in_browser.py FOLDER
 
 FOLDER holds index.html. Checks that every picture loads, that the page does not scroll sideways at
-360 and 1280 px, that the console stays silent, that every local link leads somewhere, and that
-nothing is fetched from elsewhere. Exit code 77: there is no Chromium to ask.
+360, 600 and 1280 px, that a figure says so where it is wider than its place, that the console stays
+silent, that every local link leads somewhere, and that nothing is fetched from elsewhere. Exit code 77: there is no Chromium to ask.
 """
 
 import html
@@ -21,7 +21,7 @@ import tempfile
 import urllib.parse
 
 SKIPPED = 77
-WIDTHS = (360, 1280)
+WIDTHS = (360, 600, 1280)
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
 # The page itself has no script: this one looks at it from outside, through a frame of the width of
@@ -37,8 +37,16 @@ document.getElementById("page").addEventListener("load", event => {{
     const box = element.getBoundingClientRect();
     return box.right > root.clientWidth + 1 && !element.closest(".scroll, .picture, pre");
   }});
+  // A caption tells of scrolling where its figure scrolls, and nowhere else.
+  const untold = [...page.querySelectorAll("figure")].filter(figure => {{
+    const picture = figure.querySelector(".picture");
+    const hint = event.target.contentWindow.getComputedStyle(
+      figure.querySelector("figcaption"), "::before").content;
+    return (picture.scrollWidth > picture.clientWidth) !== hint.includes("Scroll");
+  }});
   document.getElementById("answer").textContent = JSON.stringify({{
     width: root.clientWidth, needed: root.scrollWidth, pictures: page.images.length,
+    untold: untold.map(f => f.textContent.slice(0, 60)),
     broken: [...page.images].filter(i => !i.complete || i.naturalWidth === 0).map(i => i.src),
     wide: wide.slice(0, 5).map(e => e.tagName + "." + e.className + ": " +
                                     e.textContent.slice(0, 60))}});
@@ -122,6 +130,7 @@ def main(arguments):
         seen, console = look(browser, page, width)
         problems += [f"{width} px: not loaded: {picture}" for picture in seen["broken"]]
         problems += [f"{width} px: console: {line}" for line in console]
+        problems += [f"{width} px: its hint to scroll is wrong: {figure}" for figure in seen["untold"]]
         if seen["needed"] > seen["width"]:
             problems.append(f"{width} px: scrolls sideways, {seen['needed']} px wide: {seen['wide']}")
         print(f"{width} px: {seen['pictures']} pictures, {seen['needed']} px needed, "
