@@ -12,6 +12,7 @@
 #include "tests/experiments/program.hpp"
 #include "tests/locations.hpp"
 
+#include <filesystem>
 #include <set>
 #include <string>
 #include <vector>
@@ -108,6 +109,24 @@ TEST_CASE("the bibliography is read whole, and what is wrong in it is named by l
     CHECK(false);
   } catch (const kairos::InputError& error) {
     CHECK(std::string(error.what()).starts_with("x.bib:"));
+  }
+}
+
+TEST_CASE("every entry of the bibliography is cited somewhere in the tree", "[report]") {
+  std::string tree = read_all(kairos::tests::source_path("paper/replication.md"));
+  for (const char* room : {"core", "ccd", "integrators", "experiments", "scenes", "tests"}) {
+    namespace fs = std::filesystem;
+    for (const auto& file : fs::recursive_directory_iterator(kairos::tests::source_path(room))) {
+      const std::string kind = file.path().extension().string();
+      if (kind == ".hpp" || kind == ".cpp" || kind == ".toml" || kind == ".md" || kind == ".py") {
+        tree += read_all(file.path().string());
+      }
+    }
+  }
+  const std::string path = kairos::tests::source_path("paper/references.bib");
+  for (const BibliographyEntry& entry : read_bibliography(read_all(path), path)) {
+    CAPTURE(entry.key);
+    CHECK(tree.find(entry.key) != std::string::npos);
   }
 }
 
