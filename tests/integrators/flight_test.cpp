@@ -65,7 +65,7 @@ void check_landing(const CatalogueEntry& entry) {
   stepper->dense_output(motions);
   const double s = time_of_height(motions[0], 0.0);
   CHECK(std::abs((t + s).seconds - exact_time) <= 1e-10);
-  CHECK(std::abs(motions[0].velocity(s).y() + exact_speed) <= 1e-9);
+  CHECK(std::abs(motions[0].velocity(s).y() + exact_speed) <= 1e-10);
 }
 
 TEST_CASE(
