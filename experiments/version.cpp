@@ -1,5 +1,7 @@
 #include "experiments/version.hpp"
 
+#include "integrators/catalogue.hpp"
+
 #include <Eigen/Core>
 #include <fmt/format.h>
 
@@ -13,10 +15,14 @@ std::vector<std::pair<std::string, std::string>> versions() {
 #else
   constexpr std::string_view compiler = "gcc";
 #endif
-  return {{"kairos", std::string(version())},
-          {std::string(compiler), __VERSION__},
-          {"eigen",
-           fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)}};
+  std::vector<std::pair<std::string, std::string>> versions{
+      {"kairos", std::string(version())},
+      {std::string(compiler), __VERSION__},
+      {"eigen",
+       fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)}};
+  const auto solvers = integrators::solver_versions();
+  versions.insert(versions.end(), solvers.begin(), solvers.end());
+  return versions;
 }
 
 }  // namespace kairos::experiments

@@ -15,6 +15,13 @@
 #endif
 #include "integrators/velocity_verlet.hpp"
 
+#ifdef KAIROS_WITH_GSL
+#include <gsl/gsl_version.h>
+#endif
+#ifdef KAIROS_WITH_SUNDIALS
+#include <sundials/sundials_version.h>
+#endif
+
 namespace kairos::integrators {
 
 std::span<const CatalogueEntry> catalogue() {
@@ -49,6 +56,19 @@ std::span<const CatalogueEntry> catalogue() {
 #endif
   };
   return entries;
+}
+
+std::vector<std::pair<std::string, std::string>> solver_versions() {
+  std::vector<std::pair<std::string, std::string>> versions;
+#ifdef KAIROS_WITH_GSL
+  versions.emplace_back("gsl", gsl_version);
+#endif
+#ifdef KAIROS_WITH_SUNDIALS
+  char sundials[32] = "";
+  SUNDIALSGetVersion(sundials, sizeof sundials);
+  versions.emplace_back("sundials", sundials);
+#endif
+  return versions;
 }
 
 }  // namespace kairos::integrators

@@ -2,10 +2,11 @@
 
 #include <iostream>
 
-int main() {
+int main(int, char** arguments) {
   using namespace kairos;
-  const Scene scene = read_scene(SCENES "/bounce.toml");
-  const auto [result, trajectory] = experiments::simulate(scene, {.duration = 4.0});
+  const Scene scene = read_scene(arguments[1]);
+  const experiments::MethodChoice method{"event-driven", "dopri5", "certified", "newton"};
+  const auto [result, trajectory] = experiments::simulate(scene, {.method = method});
   for (const Event& event : trajectory.events()) {
     std::cout << event.time.seconds << " s: " << to_string(event.kind) << '\n';
   }

@@ -55,9 +55,12 @@ TEST_CASE("the commands and options of the README exist", "[readme]") {
   }
 }
 
-TEST_CASE("the README's ten lines are the consumer that is built and run", "[readme]") {
+TEST_CASE("the README's programs are the consumers that are built and run", "[readme]") {
   const std::string readme = read_all(root + "README.md");
-  const std::string program = read_all(root + "tests/consumer/ten_lines.cpp");
-  REQUIRE_FALSE(program.empty());
-  CHECK(readme.find("```cpp\n" + program + "```") != std::string::npos);
+  for (const std::string name : {"run_scene", "ten_lines"}) {
+    const std::string program = read_all(root + "tests/consumer/" + name + ".cpp");
+    CAPTURE(name);
+    REQUIRE_FALSE(program.empty());
+    CHECK(readme.find("```cpp\n" + program + "```") != std::string::npos);
+  }
 }
