@@ -28,6 +28,7 @@ StepResult CompositeStepper::step(const Island& island, Instant t, double h,
       end_step(states);
       return {.advanced = reached_, .error = error_, .ok = true, .reason = {}};
     }
+    dense_control_.cut(reached_);  // a solver's first step may be some eps of what was asked for
     trial = dense_control_.shorter(reached_, error);
   }
   return {.advanced = 0.0, .error = 0.0, .ok = false, .reason = failure_};

@@ -80,6 +80,8 @@ class StepControl {
     asked_ = h;
     return !active() || proposed_ >= h ? h : std::min(proposed_, 0.5 * h);
   }
+  /// A trial got only this far, for another's reasons: what `shorter` compares with.
+  void cut(double reached) { asked_ = std::min(asked_, reached); }
   /// A trial had this error > 1: the next length to try; 0: there is none.
   [[nodiscard]] double shorter(double trial, double error) {
     constexpr double least_fraction = 1e-14;

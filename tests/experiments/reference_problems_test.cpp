@@ -113,6 +113,24 @@ TEST_CASE("reference: quadratic drag, every bounce, with every controlled steppe
   CHECK(steppers >= 1);
 }
 
+TEST_CASE("reference: steps may be asked for far beyond what a tight tolerance allows",
+          "[reference]") {
+  const Scene scene = shipped("stroke");
+  for (const IntegratorEntry& entry : integrators()) {
+    if (!entry.info.controlled || entry.info.order < 5) {
+      continue;  // lower orders take 1e6 steps
+    }
+    CAPTURE(entry.info.name);
+    RunChoice choice;
+    choice.method = {"event-driven", std::string(entry.info.name), "certified", "newton"};
+    choice.step = 1.0;
+    choice.stepper = {.relative_tolerance = 1e-14, .absolute_tolerance = 1e-14};
+    const Simulation sim = simulate(scene, choice);
+    CAPTURE(sim.result.reason);
+    CHECK(sim.result.status == RunStatus::completed);
+  }
+}
+
 TEST_CASE("reference: x'' = -x with a wall at -0.3, by auto and by rootfinding of cvode",
           "[reference]") {
   const Scene scene = shipped("oscillator");
