@@ -178,6 +178,8 @@ std::string summary_text(const FinishedRun& run) {
                              integrators_in_use(run), method.detector, method.impact));
   line(status_name(run.result.status), fmt::format("t = {} s", run.result.end.seconds));
   line("frames", fmt::format("{}", run.result.cost.frames));
+  line("integrator steps", fmt::format("{}, {} right-hand sides", run.result.cost.steps,
+                                       run.result.cost.right_hand_sides));
   line("impacts", fmt::format("{}", run.result.cost.impacts));
   line("deepest penetration", fmt::format("{:.6g} m", metrics.max_depth));
   line("time overlapping", fmt::format("{:.6g} s", metrics.time_overlapping));

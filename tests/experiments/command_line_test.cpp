@@ -89,6 +89,7 @@ TEST_CASE("run prints a summary and exits with 0", "[cli]") {
   CHECK(outcome.exit_code == 0);
   CHECK(outcome.err.empty());
   CHECK(contains(outcome.out, "event-driven + auto (closed-form) + certified + newton"));
+  CHECK(contains(outcome.out, "integrator steps      2, 2 right-hand sides\n"));  // fall, rebound
   CHECK(contains(outcome.out, "t = 2.5 s"));
 }
 
