@@ -109,10 +109,10 @@ MassProperties mass_properties(std::span<const Vector3> vertices,
     extent = std::max(extent, (vertex - middle).norm());
   }
   const Integrals rough = integrate(vertices, triangles, middle);
-  // Roundoff of the sum of that many signed volumes.
-  const double least = 64.0 * std::numeric_limits<double>::epsilon() *
-                       static_cast<double>(triangles.size()) * extent * extent * extent;
-  if (!(std::abs(rough.volume) > least)) {
+  // Of the sum of that many signed volumes, relative to their size.
+  const double roundoff =
+      64.0 * std::numeric_limits<double>::epsilon() * static_cast<double>(triangles.size());
+  if (!(std::abs(rough.volume) > roundoff * std::pow(extent, 3))) {
     refuse("encloses no volume");
   }
   if (rough.volume < 0.0) {
@@ -124,6 +124,11 @@ MassProperties mass_properties(std::span<const Vector3> vertices,
   solid.volume = about_centre.volume;
   solid.inertia = about_centre.second.trace() * Matrix3::Identity() - about_centre.second;
   choose_axes(solid);
+  // No mass distribution has a moment larger than the sum of the other two.
+  const double excess = 2.0 * solid.moments.maxCoeff() - solid.moments.sum();
+  if (!(solid.moments.minCoeff() > 0.0) || excess > roundoff * std::pow(extent, 5)) {
+    refuse("crosses itself: its moments of inertia are those of no solid");
+  }
   return solid;
 }
 

@@ -25,8 +25,8 @@ struct MassProperties {
 /// relative to the mesh's own size, wherever it lies.
 ///
 /// Throws `InputError` where there is no inside: a corner that does not exist, an edge without
-/// exactly one triangle on either side, triangles turned inside out, no volume, numbers that are
-/// not finite.
+/// exactly one triangle on either side, triangles turned inside out, no volume, moments that no
+/// solid has (a surface that crosses itself), numbers that are not finite.
 [[nodiscard]] MassProperties mass_properties(std::span<const Vector3> vertices,
                                              std::span<const Triangle> triangles);
 

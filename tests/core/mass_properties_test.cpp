@@ -173,5 +173,8 @@ TEST_CASE("mass properties: what has no inside is refused with the reason", "[me
     vertex.z() = 0.25;
   }
   check_refused(bad, "no volume");
+  bad = box;
+  bad.vertices[4].y() = 3.0;
+  check_refused(bad, "crosses itself");
   check_refused({}, "empty");
 }
