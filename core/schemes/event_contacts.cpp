@@ -221,9 +221,15 @@ void EventContacts::settle(BodyIndex ball, const Support& support, double pressi
   const double still = e < 1.0 ? 2.0 * rebound / (pressing * (1.0 - e)) : 0.0;
   follow(ball, support, t);
   motions_.set_support(ball, support);
-  bodies_[ball].history.clear();
   motions_.launch(ball, t);
-  Instant& contact_begins = bodies_[ball].contact_begins;
+  auto& [history, settled, contact_begins] = bodies_[ball];
+  const bool never_before = settled == Instant::never();
+  if (history.stalls(never_before ? 1.0 : (t - settled) / run_.epoch)) {
+    return run_.stop(t, fmt::format("accumulation: {} leave and meet each other again and again, "
+                                    "and time does not go on",
+                                    run_.names(ball, support.surface)));
+  }
+  settled = t;
   contact_begins = t + still;
   if (contact_begins < Instant::never()) {
     run_.agenda.push(contact_begins, Due::contact_begins, ball, support.surface);
@@ -305,7 +311,9 @@ void EventContacts::cross_field(BodyIndex a, BodyIndex b, Instant t, bool enteri
   }
 }
 
-void EventContacts::Touching::persist(Archive& archive) { archive(history, contact_begins); }
+void EventContacts::Touching::persist(Archive& archive) {
+  archive(history, settled, contact_begins);
+}
 void EventContacts::persist(Archive& archive) { archive(bodies_); }
 
 }  // namespace core

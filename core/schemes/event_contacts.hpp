@@ -33,6 +33,7 @@ class EventContacts {
  private:
   struct Touching {
     ImpactHistory history;
+    Instant settled = Instant::never();         ///< when it last came to rest on a surface
     Instant contact_begins = Instant::never();  ///< when its bounces have died down
 
     void persist(Archive& archive);

@@ -29,9 +29,6 @@ class ImpactHistory {
   /// in a row went on by less than 1e-12, that is, where time stands still.
   [[nodiscard]] bool stalls(double progress);
 
-  /// It has come to rest, or was moved: what went before does not count.
-  void clear() { creeping_ = 0; }
-
   void persist(Archive& archive);
 
  private:

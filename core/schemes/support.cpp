@@ -91,15 +91,17 @@ std::optional<Support> find_support(const Model& model, BodyIndex ball, const Ve
   if (axis < 0) {
     return std::nullopt;
   }
-  const Vector3 centre_B = pose.to_body(centre);
+  // The arithmetic of `face_exit_time`: a ball that just left at an edge is not found on the face
+  // again by the rounding of another.
+  const Vector3 from_middle = centre - pose.position;
   for (int k = 0; k < 3; ++k) {
-    if (k != axis && std::abs(centre_B[k]) > box->half_extents[k]) {
+    const Vector3 along_k = pose.orientation * Vector3(Vector3::Unit(k));
+    if (k != axis && std::abs(from_middle.dot(along_k)) - box->half_extents[k] >= 0.0) {
       return std::nullopt;
     }
   }
-  Vector3 face_B = Vector3::Zero();
-  face_B[axis] = centre_B[axis] > 0.0 ? 1.0 : -1.0;
-  return Support{surface, pose.orientation * face_B};
+  const Vector3 face = pose.orientation * Vector3(Vector3::Unit(axis));
+  return Support{surface, from_middle.dot(face) > 0.0 ? face : Vector3(-face)};
 }
 
 double face_exit_time(const Shape& surface, const Motion& surface_motion, const Motion& ball_motion,

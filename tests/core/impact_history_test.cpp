@@ -18,10 +18,6 @@ TEST_CASE("impacts: a body that hardly moves from one to the next creeps after 2
     CHECK_FALSE(history.creeps(1e-6, 1e-8, t));
     CHECK_FALSE(history.creeps(1e-6, 1e-8, t + 1e-3));
   }
-  SECTION("what has come to rest is not held against it") {
-    history.clear();
-    CHECK_FALSE(history.creeps(1e-6, 1e-8, t + 1e-3));
-  }
 }
 
 TEST_CASE("impacts: a gap that closes makes them ever faster, a steady one does not", "[impacts]") {
