@@ -125,6 +125,13 @@ void Model::choose_bodies() {
       tally.add("collides as a box", b.name, "the scene says bounds = \"obb\", as the thesis does");
     }
   }
+  for (BodyIndex i = 0; i < size(); ++i) {
+    if (is_free(i)) {
+      free_by_name_.push_back(i);
+    }
+  }
+  std::sort(free_by_name_.begin(), free_by_name_.end(),
+            [&](BodyIndex a, BodyIndex b) { return body(a).name < body(b).name; });
   decide(tally.decisions("bodies"));
 }
 
@@ -229,17 +236,14 @@ void Model::choose_islands() {
   island_of_.assign(size(), no_island);
   const std::vector<BodyIndex> group = group_of(scene_);
   std::vector<std::size_t> place(size(), 0);
-  for (BodyIndex i = 0; i < size(); ++i) {
-    if (!is_free(i)) {
-      continue;
-    }
-    // The smallest index of a group comes first and opens its island.
-    if (group[i] == i) {
-      island_of_[i] = islands_.size();
+  for (const BodyIndex i : free_by_name_) {
+    std::size_t& of_group = island_of_[group[i]];
+    if (of_group == no_island) {
+      of_group = islands_.size();
       islands_.emplace_back();
     }
-    island_of_[i] = island_of_[group[i]];
-    Island& island = islands_[island_of_[i]];
+    island_of_[i] = of_group;
+    Island& island = islands_[of_group];
     place[i] = island.bodies.size();
     island.bodies.push_back(i);
     island.inertia.push_back(inertia_[i]);

@@ -63,7 +63,10 @@ class Model {
   [[nodiscard]] bool interacts(BodyIndex a, BodyIndex b) const {
     return interacts_[a * size() + b];
   }
-  /// The bodies that forces couple, with their constant forces; free bodies only.
+  /// Free bodies in the order of their names: what adds up over bodies does so in this order, so
+  /// that no sum depends on the order in the file.
+  [[nodiscard]] const std::vector<BodyIndex>& free_by_name() const { return free_by_name_; }
+  /// The bodies that forces couple, with their constant forces; free bodies only, by name.
   [[nodiscard]] const std::vector<Island>& islands() const { return islands_; }
   /// Island of a free body.
   [[nodiscard]] std::size_t island_of(BodyIndex i) const { return island_of_[i]; }
@@ -103,6 +106,7 @@ class Model {
   ModelOptions options_;
   std::vector<Shape> shapes_;
   std::vector<Mobility> mobility_;
+  std::vector<BodyIndex> free_by_name_;
   std::vector<bool> rotates_;
   std::vector<BodyInertia> inertia_;
   std::vector<Vector3> gravity_force_;

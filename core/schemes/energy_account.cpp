@@ -1,6 +1,5 @@
 #include "core/schemes/energy_account.hpp"
 
-#include <algorithm>
 #include <array>
 
 namespace kairos {
@@ -65,15 +64,7 @@ Vector3 field_force(const Model& model, BodyIndex field, const BodyState& field_
 }
 
 EnergyAccount::EnergyAccount(const Model& model, EnergyLedger& ledger)
-    : model_(model), ledger_(ledger) {
-  for (BodyIndex i = 0; i < model.size(); ++i) {
-    if (model.is_free(i)) {
-      free_by_name_.push_back(i);
-    }
-  }
-  std::sort(free_by_name_.begin(), free_by_name_.end(),
-            [&](BodyIndex a, BodyIndex b) { return model.body(a).name < model.body(b).name; });
-}
+    : model_(model), ledger_(ledger) {}
 
 double EnergyAccount::surplus(const Leg& leg) {
   double surplus = 0.0;
@@ -203,7 +194,7 @@ void EnergyAccount::carried(const Island& island, Instant t, std::span<const Bod
 void EnergyAccount::open(Instant t, std::span<const BodyState> bodies) {
   ledger_.open(kinetic(bodies), potential(t, bodies));
   ledger_.exchange(ledger_.kinetic());
-  for (const BodyIndex i : free_by_name_) {  // one by one: their sum may cancel
+  for (const BodyIndex i : model_.free_by_name()) {  // one by one: their sum may cancel
     ledger_.exchange(model_.gravity_potential(i, bodies[i].pose.position));
   }
   for (const Island& island : model_.islands()) {
@@ -217,7 +208,7 @@ void EnergyAccount::balance(Instant t, std::span<const BodyState> bodies) {
 
 double EnergyAccount::kinetic(std::span<const BodyState> bodies) const {
   CompensatedSum sum;
-  for (const BodyIndex i : free_by_name_) {
+  for (const BodyIndex i : model_.free_by_name()) {
     sum.add(model_.kinetic_energy(i, bodies[i]));
   }
   return sum.value();
@@ -225,7 +216,7 @@ double EnergyAccount::kinetic(std::span<const BodyState> bodies) const {
 
 double EnergyAccount::potential(Instant t, std::span<const BodyState> bodies) {
   CompensatedSum sum;
-  for (const BodyIndex i : free_by_name_) {
+  for (const BodyIndex i : model_.free_by_name()) {
     // Of bodies above and below the origin the potentials cancel; their rounding would not.
     const Vector3& force = model_.gravity_force(i);
     for (int axis = 0; axis < 3; ++axis) {

@@ -83,7 +83,6 @@ class EnergyAccount {
   // Scratch, so that booking does not allocate.
   std::vector<BodyState> from_, to_, along_;
   std::vector<Wrench> wrenches_;
-  std::vector<BodyIndex> free_by_name_;  ///< sums must not depend on the order in the file
 };
 
 }  // namespace core
