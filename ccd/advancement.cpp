@@ -147,29 +147,16 @@ class Advancement {
     return true;
   }
 
-  /// How far ahead a gap within roundoff is first looked at, s: the time to cover `length` at
-  /// `speed` and what bends the motions (a pair that hardly approaches may be through each other by
-  /// the time that its speed alone would take), and never so little that 200 doublings would not
-  /// reach the end of the window. Without that a query that starts at 0, where an ulp is nothing,
-  /// would answer before it got anywhere, and whoever asks again from there would ask for ever.
+  /// How far ahead a gap within roundoff is first looked at, s: the time to cover `length`, and
+  /// never so little that 200 doublings would not reach the end of the window. Without that a query
+  /// that starts at 0, where an ulp is nothing, would answer before it got anywhere, and whoever
+  /// asks again from there would ask for ever.
   double first_look(double length, double speed) const {
     const double remaining = motion_.duration() - k_.t;
-    const double least = std::ldexp(std::isfinite(remaining) ? remaining : 1.0, -150);
-    const double twice = speed + std::sqrt(speed * speed + 4.0 * length * acceleration());
-    if (twice == 0.0) {
-      return std::min(remaining, 1.0);
-    }
-    const double crossing = 2.0 * length / twice;
-    return std::max({8.0 * ulp(k_.t), least, std::isfinite(crossing) ? crossing : 0.0});
-  }
-
-  /// Half the acceleration of any point of b against any of a, now, and in the rest of the window
-  /// as far as the origins go, m/s^2.
-  double acceleration() const {
-    const TurnBounds turn = motion_.bounds(k_.t, 0.0);
-    return k_.c.norm() + motion_.bend(k_.t, motion_.duration()) +
-           0.5 * ((turn.w_a * turn.w_a + turn.alpha_a) * motion_.radius_a() +
-                  (turn.w_b * turn.w_b + turn.alpha_b) * motion_.radius_b());
+    const double unit = std::isfinite(remaining) ? remaining : 1.0;
+    const double crossing = motion_.time_to_cover(length, speed, k_);
+    return std::max(
+        {8.0 * ulp(k_.t), std::ldexp(unit, -150), std::isfinite(crossing) ? crossing : unit});
   }
 
   /// Looks ahead from a gap within tolerance for a proven overlap. True if that settles the query.
@@ -437,55 +424,6 @@ double default_tolerance(const MovingShape& a, const MovingShape& b, const Windo
 TimeOfImpact advance_to_impact(const MovingShape& a, const MovingShape& b, const Window& window,
                                const AdvancementOptions& options) {
   return Advancement(a, b, window, options).run();
-}
-
-TimeOfImpact advance_to_separation(const MovingShape& a, const MovingShape& b, const Window& window,
-                                   double tolerance) {
-  const PairKind kind = pair_kind(a.shape, b.shape);
-  const PairMotion motion(a, b, window);
-  const double enough = tolerance > 0.0 ? tolerance : default_tolerance(a, b, window);
-  const double duration = motion.duration();
-  TimeOfImpact toi;
-  Kinematics k;
-  double t = 0.0;
-  double probe = 0.0;
-  bool settled = false;
-  for (int step = 0; step < 200000 && !settled; ++step) {
-    motion.evaluate(t + probe, k);
-    ++toi.evaluations;
-    const Witness witness = find_witness(kind, motion, k);
-    toi.normal = witness.n / witness.length;
-    if (witness.gap > k.error / witness.length && (t + probe > 0.0 || witness.gap > enough)) {
-      toi.status = t + probe > 0.0 ? ToiStatus::impact : ToiStatus::separated;
-      toi.t_lo = t;
-      toi.t_hi = t + probe;
-      return toi;
-    }
-    if (!(t + probe < duration)) {
-      break;
-    }
-    const double remaining = duration - t;
-    if (-witness.gap > enough) {  // deep: no point of b leaves a before depth / speed
-      t += probe;
-      probe = 0.0;
-      const double horizon = std::min(duration - t, std::max(1.0, t));
-      const TurnBounds turn = motion.bounds(t, horizon);
-      const double speed = motion.speed_bound(k, turn, horizon);
-      const double safe = speed > 0.0 ? (-witness.gap - k.error) / speed : horizon;
-      const double next = t + std::min({safe, horizon});
-      settled = !(next > t);
-      t = std::min(next, duration);
-    } else {  // within tolerance of parting: look ahead, ever further
-      const double speed = motion.speed_bound(k, motion.bounds(t, 0.0), 0.0);
-      const double least =
-          speed > 0.0 ? std::max(8.0 * ulp(t), 0.25 * enough / speed) : std::min(remaining, 1.0);
-      probe = std::min(remaining, std::max(2.0 * probe, least));
-      settled = !(t + probe > t);
-    }
-  }
-  toi.status = ToiStatus::overlapping;
-  toi.t_lo = toi.t_hi = duration;
-  return toi;
 }
 
 }  // namespace kairos::ccd

@@ -37,6 +37,7 @@ class Bisection {
       if (!(t + step > t) || toi_.evaluations >= most_looks) {
         return answer(ToiStatus::undecided, t, duration, look(t));
       }
+      last_step_ = step;
       const double next = std::min(duration, t + step);
       const bool inside = overlaps(next);
       if (inside && !was_inside) {
@@ -81,7 +82,8 @@ class Bisection {
   double limited_step(double t) {
     motion_.evaluate(t, k_);
     const double remaining = motion_.duration() - t;
-    double step = std::min(remaining, 1.0);
+    double step = last_step_ > 0.0 ? std::min(remaining, 4.0 * last_step_)
+                                   : (std::isfinite(remaining) ? remaining : 1.0);
     for (int attempt = 0; attempt < 200; ++attempt) {
       const double moved = motion_.speed_bound(k_, motion_.bounds(t, step), step) * step;
       if (moved <= threshold_) {
@@ -147,6 +149,7 @@ class Bisection {
   Kinematics k_;
   double tolerance_ = 0.0;
   double threshold_ = 0.0;
+  double last_step_ = 0.0;  ///< s
   TimeOfImpact toi_;
 };
 

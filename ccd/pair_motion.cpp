@@ -286,4 +286,13 @@ double PairMotion::speed_bound(const Kinematics& k, const TurnBounds& turn, doub
          (1.0 + 16.0 * u);
 }
 
+double PairMotion::time_to_cover(double length, double speed, const Kinematics& k) const {
+  // Half the acceleration of any point now, and in the rest of the window as far as origins go.
+  const TurnBounds turn = bounds(k.t, 0.0);
+  const double half = k.c.norm() + bend(k.t, duration_) +
+                      0.5 * ((turn.w_a * turn.w_a + turn.alpha_a) * radius_a_ +
+                             (turn.w_b * turn.w_b + turn.alpha_b) * radius_b_);
+  return 2.0 * length / (speed + std::sqrt(speed * speed + 4.0 * length * half));
+}
+
 }  // namespace kairos::ccd

@@ -63,6 +63,10 @@ class PairMotion {
   /// Upper bound of the speed of any point of b against any point of a on [t, t + horizon], m/s.
   [[nodiscard]] double speed_bound(const Kinematics& k, const TurnBounds& turn,
                                    double horizon) const;
+  /// When `length` is covered at `speed` and what bends the motions, s; infinite or NaN: never. (A
+  /// pair that hardly approaches may be through each other by the time that its speed alone would
+  /// take.)
+  [[nodiscard]] double time_to_cover(double length, double speed, const Kinematics& k) const;
 
  private:
   const Motion* motion_a_;

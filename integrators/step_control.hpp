@@ -68,8 +68,11 @@ class StepControl {
     for (std::size_t n = 0; n < stage.size(); ++n) {
       d2 = std::max(d2, scaled((slope[n] - rate[n]) / guess, y[n], 0.0));
     }
-    const double steepest = std::max(d1, d2);
-    const double from_order = steepest > 0.0 ? std::pow(0.01 / steepest, -exponent_) : h;
+    // [Hairer1993] takes a second for the time in which y changes by its own size: here it is that
+    // time, whatever its unit.
+    const double change = std::min(d0 / d1, std::sqrt(d0 / d2));
+    const double from_order =
+        std::isfinite(change) && change > 0.0 ? change * std::pow(0.01 / d0, -exponent_) : h;
     proposed_ = std::min({100.0 * guess, from_order, h});
   }
 

@@ -1,0 +1,72 @@
+#include "ccd/advancement.hpp"
+#include "ccd/pair_motion.hpp"
+#include "ccd/roundoff.hpp"
+#include "ccd/separation_function.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kairos::ccd {
+namespace {
+
+/// How long no point of b gets out from `depth`, s. The bound of a long horizon is useless where
+/// bodies accelerate: `horizon` shrinks to what the answer needs, and is taken up by the next step.
+double safely_inside(const PairMotion& motion, const Kinematics& k, double depth, double& horizon) {
+  while (true) {
+    const double speed = motion.speed_bound(k, motion.bounds(k.t, horizon), horizon);
+    const double safe = speed > 0.0 ? depth / speed : horizon;
+    if (!(safe < 0.25 * horizon) || !(depth > 0.0)) {
+      return std::min(safe, horizon);
+    }
+    horizon = std::max(2.0 * safe, horizon / 16.0);
+  }
+}
+
+}  // namespace
+
+TimeOfImpact advance_to_separation(const MovingShape& a, const MovingShape& b, const Window& window,
+                                   double tolerance) {
+  const PairKind kind = pair_kind(a.shape, b.shape);
+  const PairMotion motion(a, b, window);
+  const double enough = tolerance > 0.0 ? tolerance : default_tolerance(a, b, window);
+  const double duration = motion.duration();
+  TimeOfImpact toi;
+  Kinematics k;
+  double t = 0.0;
+  double probe = 0.0;
+  double horizon = std::isfinite(duration) ? duration : 1.0;  // of the bounds
+  bool settled = false;
+  for (int step = 0; step < 200000 && !settled; ++step) {
+    motion.evaluate(t + probe, k);
+    ++toi.evaluations;
+    const Witness witness = find_witness(kind, motion, k);
+    toi.normal = witness.n / witness.length;
+    if (witness.gap > k.error / witness.length && (t + probe > 0.0 || witness.gap > enough)) {
+      toi.status = t + probe > 0.0 ? ToiStatus::impact : ToiStatus::separated;
+      toi.t_lo = t;
+      toi.t_hi = t + probe;
+      return toi;
+    }
+    if (!(t + probe < duration)) {
+      break;
+    }
+    if (-witness.gap > enough) {  // deep: no point of b leaves a before depth / speed
+      t += probe;
+      probe = 0.0;
+      horizon = std::min(duration - t, 4.0 * horizon);
+      const double safe = safely_inside(motion, k, -witness.gap - k.error, horizon);
+      settled = !(t + safe > t);
+      t = std::min(t + safe, duration);
+    } else {  // within tolerance of parting: look ahead, ever further
+      const double speed = motion.speed_bound(k, motion.bounds(k.t, 0.0), 0.0);
+      const double least = motion.time_to_cover(0.25 * enough, speed, k);
+      probe = std::min(duration - t, std::max({2.0 * probe, 8.0 * ulp(t), least}));
+      settled = !(t + probe > t) || !std::isfinite(probe);
+    }
+  }
+  toi.status = ToiStatus::overlapping;
+  toi.t_lo = toi.t_hi = duration;
+  return toi;
+}
+
+}  // namespace kairos::ccd
