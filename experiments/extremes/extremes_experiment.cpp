@@ -1,6 +1,7 @@
 #include "experiments/extremes/extremes_experiment.hpp"
 
 #include "core/error.hpp"
+#include "experiments/extremes/thesis_explanation.hpp"
 #include "experiments/named_method.hpp"
 #include "experiments/parallel_for.hpp"
 #include "experiments/progress_bar.hpp"
@@ -63,50 +64,6 @@ std::vector<NamedMethod> methods() {
   return all;
 }
 
-bool is_wrong(Verdict v) { return v != Verdict::right; }
-
-/// Which line of our reading of the thesis explains what its scheme got wrong here.
-std::string explanation(const ExtremeCase& extreme, const Judged& judged) {
-  const std::string& family = extreme.family;
-  if (judged.verdict == Verdict::reported) {
-    return "said so: " + judged.reason;
-  }
-  if (family == "closing gap") {
-    return "the original scheme 4: a reflection whatever the direction, and no test whether there "
-           "is room";
-  }
-  if (family == "stiffness") {
-    return "the original scheme 6: p += v h, v += a h, a = F/m, all from the old values: explicit "
-           "and a step late, it gains energy (prediction 1)";
-  }
-  if (family == "corner" || family == "nested static boxes") {
-    return judged.impacts == 0
-               ? "prediction 4, tunnelling"
-               : "prediction 8: one collision per object as `current` a frame, found a part of a "
-                 "frame late; what still overlaps is turned back inwards (prediction 2)";
-  }
-  if (family == "restitution, gravity" || family == "at rest in contact") {
-    return judged.impacts > 1
-               ? "prediction 2, the jiggle: no approach test, so that with e < 1 what "
-                 "still overlaps is turned back inwards"
-               : "prediction 1: energy gained in flight, a in arrears by a frame; the "
-                 "impact handled where the frame finds it (fig. 13)";
-  }
-  if (judged.impacts == 0) {
-    return "prediction 4, tunnelling: seen once a frame, missed with probability max(0, 1 - (w+2r)/"
-           "(v h))";
-  }
-  if (family == "consecutive impacts") {
-    return "prediction 2: late by a part of a frame each time, and what still overlaps is turned "
-           "back inwards";
-  }
-  if (family == "mass ratio") {
-    return "fig. 13: the exchange is right (13.7), but handled up to a frame late";
-  }
-  return judged.impacts > 1 ? "prediction 2: what still overlaps is turned back inwards"
-                            : "fig. 13: handled up to a frame late, sunk in by v h at most";
-}
-
 Table map_table(const std::vector<ExtremeCase>& cases, std::span<const NamedMethod> all,
                 const std::vector<Judged>& judged) {
   Table table{{"family", "x_name", "x", "y_name", "y", "method", "verdict", "error", "impacts",
@@ -116,13 +73,13 @@ Table map_table(const std::vector<ExtremeCase>& cases, std::span<const NamedMeth
     const ExtremeCase& c = cases[i / all.size()];
     const NamedMethod& method = all[i % all.size()];
     const Judged& cell = judged[i];
-    const bool explained = method.name == "thesis" && is_wrong(cell.verdict);
+    const bool explained = method.name == "thesis" && cell.verdict != Verdict::right;
     table.rows.push_back({c.family, c.x_name, c.x, c.y_name,
                           c.y_name.empty() ? Cell() : number_cell(c.y), std::string(method.name),
                           std::string(to_string(cell.verdict)),
                           cell.verdict == Verdict::reported ? Cell() : number_cell(cell.error),
                           static_cast<std::int64_t>(cell.impacts), cell.reason,
-                          explained ? Cell(explanation(c, cell)) : Cell()});
+                          explained ? Cell(why_thesis_is_wrong(c, cell)) : Cell()});
   }
   return table;
 }

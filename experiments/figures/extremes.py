@@ -27,29 +27,28 @@ def draw(data, figures):
 
 
 def label(value):
-    if value == 0:
-        return "0"
-    power = math.log10(abs(value))
-    return f"$10^{{{round(power)}}}$" if abs(power - round(power)) < 1e-9 else f"{value:.3g}"
+    if value != 0 and not 0.01 <= abs(value) <= 1000:
+        return f"$10^{{{round(math.log10(abs(value)))}}}$"
+    return f"{value:g}" if float(f"{value:g}") == value else f"<{value:g}"
 
 
 def grid(figures, rows, methods, families, name, caption):
-    figure, panels = plt.subplots(len(families), len(methods), squeeze=False,
-                                  figsize=(1.75 * len(methods), 1.75 * len(families) + 0.6))
-    for line, family in zip(panels, families):
-        for panel, method in zip(line, methods):
-            heat(panel, pick(rows, family=family, method=method))
-            if family == families[0]:
-                panel.set_title(method.replace(", ", ",\n"), fontsize=8)
+    figure = plt.figure(figsize=(1.4 * len(methods), 1.75 * len(families) + 0.6))
+    for part, family in zip(figure.subfigures(len(families), 1), families):
         some = pick(rows, family=family)[0]
-        line[0].set_ylabel(some["y_name"], fontsize=7)
-        line[0].set_xlabel(some["x_name"], fontsize=7)
+        part.suptitle(f"{family}: across {some['x_name']}, up {some['y_name']}", x=0.01,
+                      ha="left", fontsize=10, fontweight="bold")
+        line = part.subplots(1, len(methods))
+        for panel, method in zip(line, methods):
+            heat(panel, pick(rows, family=family, method=method), most=3)
+            panel.set_title(method.replace(", ", ",\n"), fontsize=8.5, fontweight="normal")
         for panel in line[1:]:
             panel.set_yticklabels([])
-    finish(figure, figures, name, caption)
+    finish(figure, figures, name, caption, below=-0.03)
 
 
-def heat(panel, rows):
+def heat(panel, rows, most=7):
+    """Cells, with at most so many labels an axis."""
     xs = sorted(unique(r["x"] for r in rows))
     ys = sorted(unique(r["y"] for r in rows))
     image = [[math.nan] * len(xs) for _ in ys]
@@ -57,14 +56,14 @@ def heat(panel, rows):
         code = VERDICTS.index(row["verdict"])
         i, j = ys.index(row["y"]), xs.index(row["x"])
         image[i][j] = code
-        panel.text(j, i, SIGNS[code], ha="center", va="center", fontsize=6,
+        panel.text(j, i, SIGNS[code], ha="center", va="center", fontsize=7 if len(xs) < 12 else 5,
                    color="white" if code >= 3 else "black")
     panel.imshow(image, cmap=ListedColormap(SHADES), vmin=-0.5, vmax=4.5, origin="lower",
                  aspect="auto", interpolation="nearest")
     panel.grid(False)
-    every = max(1, len(xs) // 4)
-    panel.set_xticks(range(0, len(xs), every), [label(x) for x in xs[::every]], fontsize=6)
-    panel.set_yticks(range(len(ys)), [label(y) for y in ys], fontsize=6)
+    across, up = -(-len(xs) // most), -(-len(ys) // 5)
+    panel.set_xticks(range(0, len(xs), across), [label(x) for x in xs[::across]], fontsize=8)
+    panel.set_yticks(range(0, len(ys), up), [label(y) for y in ys[::up]], fontsize=8)
 
 
 def lines(figures, rows, methods, families):
@@ -76,17 +75,17 @@ def lines(figures, rows, methods, families):
         for row in of_family:
             row["y"] = float(len(methods) - 1 - methods.index(row["method"]))
         heat(panel, of_family)
-        panel.set_yticks(range(len(methods)), methods[::-1], fontsize=7)
-        panel.set_title(family, fontsize=8)
-        panel.set_xlabel(of_family[0]["x_name"], fontsize=7)
+        panel.set_yticks(range(len(methods)), methods[::-1], fontsize=8)
+        panel.set_title(family, fontsize=10)
+        panel.set_xlabel(of_family[0]["x_name"], fontsize=8.5)
     for panel in list(panels.flat)[len(families):]:
         panel.axis("off")
     finish(figure, figures, "map-one", "The stability map, one axis at a time.")
 
 
-def finish(figure, figures, name, caption):
+def finish(figure, figures, name, caption, below=-0.04):
     patches = [Patch(facecolor=shade, edgecolor="#666666",
                      label=f"{verdict} ({sign})" if sign else verdict)
                for shade, verdict, sign in zip(SHADES, VERDICTS, SIGNS)]
-    figure.legend(handles=patches, loc="lower center", ncol=5, bbox_to_anchor=(0.5, -0.04))
+    figure.legend(handles=patches, loc="lower center", ncol=5, bbox_to_anchor=(0.5, below))
     figures.save(figure, name, caption)

@@ -1,9 +1,7 @@
-// What accuracy costs, and where methods break: tradeoff, recommend, the stability map, savings.
+// What accuracy costs: tradeoff, recommend, savings.
 
 #include "core/exact_solution.hpp"
 #include "experiments/ablation/ablation_experiment.hpp"
-#include "experiments/extremes/extremes_experiment.hpp"
-#include "experiments/parallel_for.hpp"
 #include "experiments/scene_library.hpp"
 #include "experiments/tradeoff/recommend.hpp"
 #include "tests/catch.hpp"
@@ -160,26 +158,6 @@ TEST_CASE("the commands tradeoff and recommend: evidence, the same each time", "
   const auto chaotic = tests::kairos_program({"tradeoff", "billiard"});
   CHECK(chaotic.exit_code == 0);
   CHECK(chaotic.out.find("chaotic: compared up to") != std::string::npos);
-}
-
-TEST_CASE(
-    "event-driven with certified: no cell of the stability map is wrong in silence, none hangs",
-    "[extremes][slow]") {
-  const std::vector<ExtremeCase> cases = extreme_cases(Size::quick);
-  RunChoice choice;
-  choice.stepper = {1e-10, 1e-8};
-  std::vector<Judged> judged(cases.size());
-  parallel_for(cases.size(), 0, [&](std::size_t i) { judged[i] = judge(cases[i], choice); });
-  std::size_t right = 0;
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    CAPTURE(cases[i].family, cases[i].x_name, cases[i].x, cases[i].y_name, cases[i].y,
-            judged[i].error, judged[i].reason);
-    CHECK(judged[i].verdict != Verdict::wrong_in_silence);
-    CHECK(judged[i].verdict != Verdict::hung);
-    right += judged[i].verdict == Verdict::right ? 1 : 0;
-  }
-  CAPTURE(right, cases.size());
-  CHECK(right * 10 >= cases.size() * 8);
 }
 
 TEST_CASE("each saving of the model saves, and changes no answer", "[ablation]") {
