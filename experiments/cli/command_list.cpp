@@ -1,6 +1,7 @@
 #include "core/entity.hpp"
 #include "core/error.hpp"
 #include "experiments/cli/commands.hpp"
+#include "experiments/metrics/metrics.hpp"
 #include "experiments/output/csv_row.hpp"
 #include "experiments/registry.hpp"
 #include "experiments/scene_library.hpp"
@@ -125,19 +126,29 @@ Listing list_figures() {
   return listing;
 }
 
+Listing list_metrics() {
+  Listing listing{{"name", "unit", "summary"}, {}};
+  for (const MetricInfo& metric : metric_catalogue()) {
+    listing.rows.push_back(
+        {std::string(metric.name), std::string(metric.unit), std::string(metric.meaning)});
+  }
+  return listing;
+}
+
 struct Section {
   const char* name;
   Listing (*list)();
 };
-constexpr std::array<Section, 9> sections{{{"schemes", list_schemes},
-                                           {"integrators", list_integrators},
-                                           {"detectors", list_detectors},
-                                           {"impact-laws", list_impact_laws},
-                                           {"broad-phases", list_broad_phases},
-                                           {"entities", list_entities},
-                                           {"scenes", list_scenes},
-                                           {"experiments", list_experiments},
-                                           {"figures", list_figures}}};
+constexpr std::array<Section, 10> sections{{{"schemes", list_schemes},
+                                            {"integrators", list_integrators},
+                                            {"detectors", list_detectors},
+                                            {"impact-laws", list_impact_laws},
+                                            {"broad-phases", list_broad_phases},
+                                            {"entities", list_entities},
+                                            {"scenes", list_scenes},
+                                            {"experiments", list_experiments},
+                                            {"figures", list_figures},
+                                            {"metrics", list_metrics}}};
 
 /// For people: columns as wide as what is in them; a header where names alone do not say enough.
 void print_table(const Section& section, const Listing& listing) {

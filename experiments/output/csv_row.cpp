@@ -3,7 +3,6 @@
 #include <fmt/compile.h>
 #include <fmt/format.h>
 
-#include <cassert>
 #include <cmath>
 #include <iterator>
 
@@ -39,9 +38,10 @@ CsvRow& CsvRow::field(std::string_view value) {
 }
 
 CsvRow& CsvRow::number(double value) {
-  assert(std::isfinite(value));
   separate();
-  fmt::format_to(std::back_inserter(line_), FMT_COMPILE("{}"), value);
+  if (std::isfinite(value)) {
+    fmt::format_to(std::back_inserter(line_), FMT_COMPILE("{}"), value);
+  }
   return *this;
 }
 

@@ -9,7 +9,8 @@
 namespace kairos::experiments {
 
 /// One line of a CSV file, built in a buffer that is used again and again. Numbers are written in
-/// the shortest form that reads back the same; text is quoted where it must be (RFC 4180).
+/// the shortest form that reads back the same, NaN and infinity as an empty field; text is quoted
+/// where it must be (RFC 4180).
 class CsvRow {
  public:
   CsvRow& text(std::string_view value);
