@@ -41,7 +41,8 @@ def by_work(figures, scene, rows, reference):
         panel.set_xlabel("counted work: right-hand sides, overlap tests, gap evaluations")
     style.legend_below(figure, panels.flat, columns=4)
     figures.save(figure, f"{scene}-work", f"{scene}: {reference['compared']}. Reference: "
-                 f"{reference['reference']}. Marks on the upper edge: refused, stopped or too long.")
+                 f"{reference['reference']}. Marks on the upper edge: refused, stopped or too long; of a "
+                 "scheme: it missed the impact.")
 
 
 def label_zero(panel, errors):
@@ -87,6 +88,12 @@ def scatter(panel, rows, schemes, x, error):
         look.update(linestyle="none", alpha=0.9)
         good = [r for r in rows if r["scheme"] == scheme and r[error] is not None and r[x]]
         panel.plot([r[x] for r in good], [max(r[error], FLOOR) for r in good], **look)
+        # Without an impact there is no error of its time.
+        none = [r for r in rows if r["scheme"] == scheme and r["status"] == "completed" and
+                r[error] is None]
+        if none:
+            panel.plot([r[x] for r in none], [0.985] * len(none), **look | {"label": None},
+                       transform=panel.get_xaxis_transform(), clip_on=False)
     panel.set_xscale("log")
     panel.set_yscale("log")
     failed = [r for r in rows if r["status"] != "completed"]

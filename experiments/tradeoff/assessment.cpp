@@ -3,6 +3,7 @@
 #include "experiments/parallel_for.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace kairos::experiments {
@@ -41,7 +42,7 @@ std::vector<bool> pareto_front(const Assessment& assessment, double Errors::*err
   };
   std::vector<bool> front;
   for (const Assessed& method : assessment.methods) {
-    front.push_back(method.run.completed() &&
+    front.push_back(method.run.completed() && std::isfinite(method.errors.*error) &&
                     std::none_of(assessment.methods.begin(), assessment.methods.end(),
                                  [&](const Assessed& by) { return dominated(by, method); }));
   }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace kairos::experiments {
 namespace {
@@ -196,7 +197,9 @@ Errors errors_of(const MeasuredRun& run, const Reference& reference) {
   };
   for (const auto& [pair, times] : reference.impacts) {
     const std::vector<double> ours = of(run.impacts, pair);
-    errors.event_time = std::max(errors.event_time, worst_difference(times, ours));
+    const bool none = ours.empty() && !times.empty();
+    errors.event_time = std::max(errors.event_time, none ? std::numeric_limits<double>::infinity()
+                                                         : worst_difference(times, ours));
     errors.missed += static_cast<std::int64_t>(times.size()) -
                      static_cast<std::int64_t>(std::min(times.size(), ours.size()));
   }

@@ -27,8 +27,9 @@ struct Reference {
 
 /// How far a run is from the reference.
 struct Errors {
-  double position = 0.0;     ///< m, of the farthest free body at the end
-  double event_time = 0.0;   ///< s, of the worst impact that both have
+  double position = 0.0;  ///< m, of the farthest free body at the end
+  /// s, of the worst impact that both have; infinite where the run has none of a pair's.
+  double event_time = 0.0;
   std::int64_t missed = 0;   ///< impacts of the reference that the run does not have
   double penetration = 0.0;  ///< m, deepest in a drawn frame
   double energy = 0.0;       ///< largest in a drawn frame, relative

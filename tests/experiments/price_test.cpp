@@ -8,6 +8,7 @@
 #include "tests/experiments/program.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -158,6 +159,25 @@ TEST_CASE("the commands tradeoff and recommend: evidence, the same each time", "
   const auto chaotic = tests::kairos_program({"tradeoff", "billiard"});
   CHECK(chaotic.exit_code == 0);
   CHECK(chaotic.out.find("chaotic: compared up to") != std::string::npos);
+}
+
+TEST_CASE("tradeoff: who misses an impact has no error of its time, and is no cheapest answer",
+          "[tradeoff]") {
+  const BodyPair pair{0, 1}, other{0, 2};
+  Assessment assessment;
+  assessment.reference.impacts = {{pair, {1.0, 2.0}}, {other, {}}};
+  for (const auto& impacts : {std::vector<double>{}, {1.25, 2.0}, {1.0}}) {
+    MeasuredRun run{.status = "completed", .reason = {}, .end = {}};
+    run.impacts[pair] = impacts;
+    run.cost.overlap_tests = static_cast<std::int64_t>(impacts.size());
+    assessment.methods.push_back({{}, run, errors_of(run, assessment.reference)});
+  }
+  CHECK(std::isinf(assessment.methods[0].errors.event_time));
+  CHECK(assessment.methods[0].errors.missed == 2);
+  CHECK(assessment.methods[1].errors.event_time == 0.25);
+  CHECK(assessment.methods[2].errors.event_time == 0.0);  // of the one that both have
+  CHECK(assessment.methods[2].errors.missed == 1);
+  CHECK(pareto_front(assessment, &Errors::event_time) == std::vector<bool>{false, false, true});
 }
 
 TEST_CASE("each saving of the model saves, and changes no answer", "[ablation]") {
