@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -24,7 +25,9 @@ struct TradeoffCommand {
   void run() const;
 };
 
-std::string number(bool known, double x) { return known ? fmt::format("{:.2e}", x) : "-"; }
+std::string number(bool known, double x) {
+  return known && std::isfinite(x) ? fmt::format("{:.2e}", x) : "-";
+}
 
 void print(const Assessment& assessment) {
   const Reference& reference = assessment.reference;

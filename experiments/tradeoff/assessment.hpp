@@ -28,7 +28,7 @@ struct Assessment {
 [[nodiscard]] Assessment assess(const Model& model, double duration, std::size_t threads);
 
 /// Which methods are on the Pareto front of counted work and the given error: none is both cheaper
-/// and better. Only runs that completed can be.
+/// and better. Only runs that completed, with an error that is finite, can be.
 [[nodiscard]] std::vector<bool> pareto_front(const Assessment& assessment, double Errors::*error);
 
 /// One row per candidate: errors, counted work, fronts.

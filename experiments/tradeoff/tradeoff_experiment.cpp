@@ -1,6 +1,12 @@
 #include "experiments/tradeoff/tradeoff_experiment.hpp"
 
 #include "experiments/scene_library.hpp"
+#include "experiments/tradeoff/recommend.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 
 namespace kairos::experiments {
 namespace {
@@ -25,6 +31,36 @@ Table front_table(const std::vector<Assessment>& assessments) {
   return table;
 }
 
+constexpr std::array<Requirements, 6> asked{{{.error = 1e-3},
+                                             {.error = 1e-6},
+                                             {.error = 1e-9},
+                                             {.error = 1e-6, .penetration = 0.0},
+                                             {.error = 1e-6, .penetration = 0.0, .budget = 1e-3},
+                                             {.error = 1e-6, .penetration = {}, .budget = 1e-6}}};
+
+/// What `kairos recommend` answers: rows of one scene. `frame`: s.
+void add_recommended(Table& table, const Assessment& assessment, double frame) {
+  table.columns = {"scene",  "error",          "penetration", "budget", "does",
+                   "method", "work_per_frame", "ends_off",    "depth"};
+  const double frames = std::max(1.0, assessment.reference.until / frame);
+  for (const Requirements& wanted : asked) {
+    const Recommendation found = recommend(assessment, wanted, frame);
+    const auto does = std::count(found.shortcomings.begin(), found.shortcomings.end(), "");
+    std::vector<Cell> row{assessment.scene, wanted.error,
+                          wanted.penetration ? Cell(*wanted.penetration) : Cell(),
+                          wanted.budget ? Cell(*wanted.budget) : Cell(),
+                          fmt::format("{} of {}", does, assessment.methods.size())};
+    if (found.pick) {
+      const auto& [candidate, run, errors] = assessment.methods[*found.pick];
+      row.insert(row.end(), {candidate.name, number_cell(static_cast<double>(run.work()) / frames),
+                             number_cell(errors.position), number_cell(errors.penetration)});
+    } else {
+      row.insert(row.end(), {std::string("none"), Cell(), Cell(), Cell()});
+    }
+    table.rows.push_back(std::move(row));
+  }
+}
+
 }  // namespace
 
 ProgramOutput tradeoff_output(const std::vector<Assessment>& assessments, Table timings) {
@@ -45,15 +81,19 @@ ProgramOutput tradeoff_output(const std::vector<Assessment>& assessments, Table 
 
 ProgramOutput run_tradeoff(const ExperimentSpec& spec, Size size, std::size_t threads) {
   std::vector<Assessment> assessments;
-  Table timings;
+  Table timings, recommended;
   for (const std::string& name : spec.scenes) {
     const Model model(read_scene(find_scene(name)));
     assessments.push_back(assess(model, model.scene().duration, threads));
     const Table times = timing_table(model, assessments.back(), size == Size::quick ? 3 : 9);
     timings.columns = times.columns;
     timings.rows.insert(timings.rows.end(), times.rows.begin(), times.rows.end());
+    add_recommended(recommended, assessments.back(), mean_frame_duration(model.scene().frames));
   }
-  return tradeoff_output(assessments, std::move(timings));
+  ProgramOutput output = tradeoff_output(assessments, std::move(timings));
+  output.tables.emplace_back("recommended", std::move(recommended));
+  output.shown.emplace_back("recommended");
+  return output;
 }
 
 }  // namespace kairos::experiments
