@@ -191,6 +191,14 @@ void EnergyAccount::carried(const Island& island, Instant t, std::span<const Bod
   ledger_.add(EnergyLine::conveyor_and_hand, work);
 }
 
+void EnergyAccount::struck(BodyIndex i, const BodyState& before, const BodyState& after) {
+  const BodyInertia& inertia = model_.inertia(i);
+  ledger_.exchange(kinetic_gain(inertia.mass, before.twist.linear, after.twist.linear));
+  if (inertia.rotates) {
+    ledger_.exchange(spin_gains(inertia, before, after).cwiseAbs().sum());
+  }
+}
+
 void EnergyAccount::open(Instant t, std::span<const BodyState> bodies) {
   ledger_.open(kinetic(bodies), potential(t, bodies));
   ledger_.exchange(ledger_.kinetic());

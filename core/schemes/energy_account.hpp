@@ -61,6 +61,10 @@ class EnergyAccount {
   void carried(const Island& island, Instant t, std::span<const BodyState> from,
                std::span<const BodyState> to);
 
+  /// An impact changed its velocities: what it turned into spin, out of it, or handed on is no gain
+  /// or loss, but it is a flow.
+  void struck(BodyIndex i, const BodyState& before, const BodyState& after);
+
   /// A body was moved without time passing: work against gravity.
   void moved(BodyIndex i, const Vector3& displacement) {
     ledger_.add(EnergyLine::position_correction, -model_.gravity_force(i).dot(displacement));

@@ -33,7 +33,11 @@ ImpactEnergy SchemeRun::exchange(Event& event, BodyState& a, BodyState& b, Vecto
   }
   for (const auto& [i, before, after] : {std::tuple{event.a, &event.before_a, &event.after_a},
                                          std::tuple{event.b, &event.before_b, &event.after_b}}) {
-    if (model.is_free(i) && after->pose.position != before->pose.position) {
+    if (!model.is_free(i)) {
+      continue;
+    }
+    account.struck(i, *before, *after);
+    if (after->pose.position != before->pose.position) {
       account.moved(i, after->pose.position - before->pose.position);
     }
   }

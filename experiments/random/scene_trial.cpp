@@ -33,9 +33,7 @@ class Watch : public Recorder {
   }
   void frame(const Frame& frame) override {
     check_overlap(frame.bodies, frame.time);
-    // The ledger's promise is 8 eps of what flowed. One box in 20,000 scenes, integrated in 119
-    // steps, came to 8.7 (seed 4242, number 15588): twice the promise is a broken one.
-    const double allowed = 16.0 * std::numeric_limits<double>::epsilon() * frame.ledger.flow();
+    const double allowed = 8.0 * std::numeric_limits<double>::epsilon() * frame.ledger.flow();
     if (std::abs(frame.ledger.unexplained()) > allowed) {
       throw BrokenPromise{
           Fate::ledger,
