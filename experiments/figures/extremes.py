@@ -28,7 +28,9 @@ def draw(data, figures):
 
 def label(value):
     if value != 0 and not 0.01 <= abs(value) <= 1000:
-        return f"$10^{{{round(math.log10(abs(value)))}}}$"
+        power = math.floor(math.log10(abs(value)) + 1e-9)
+        times = f"{value / 10.0 ** power:.3g}"
+        return f"$10^{{{power}}}$" if times == "1" else f"${times}\\cdot10^{{{power}}}$"
     return f"{value:g}" if float(f"{value:g}") == value else f"<{value:g}"
 
 
