@@ -33,7 +33,7 @@ struct Node {
 class DynamicTree final : public BroadPhase {
  public:
   explicit DynamicTree(std::size_t bodies)
-      : boxes_(bodies), leaf_(bodies, none), unbounded_(bodies, false), known_(bodies, false) {
+      : boxes_(bodies), leaf_(bodies, none), known_(bodies, false) {
     nodes_.reserve(2 * bodies);
   }
 
@@ -46,9 +46,11 @@ class DynamicTree final : public BroadPhase {
     }
     boxes_[body] = swept;
     known_[body] = true;
-    unbounded_[body] = !(swept.lower.allFinite() && swept.upper.allFinite());
-    if (!unbounded_[body]) {
+    std::erase(unbounded_, body);
+    if (swept.lower.allFinite() && swept.upper.allFinite()) {
       leaf_[body] = insert(body, swept);
+    } else {
+      unbounded_.push_back(body);
     }
   }
 
@@ -58,8 +60,8 @@ class DynamicTree final : public BroadPhase {
     }
     const auto begin = static_cast<std::ptrdiff_t>(out.size());
     collect(root_, body, out);
-    for (BodyIndex other = 0; other < boxes_.size(); ++other) {
-      if (unbounded_[other] && other != body && boxes_[other].overlaps(boxes_[body])) {
+    for (const BodyIndex other : unbounded_) {
+      if (other != body && boxes_[other].overlaps(boxes_[body])) {
         out.push_back(other);
       }
     }
@@ -211,7 +213,7 @@ class DynamicTree final : public BroadPhase {
 
   std::vector<Aabb> boxes_;
   std::vector<NodeIndex> leaf_;
-  std::vector<bool> unbounded_;
+  std::vector<BodyIndex> unbounded_;
   std::vector<bool> known_;
   std::vector<Node> nodes_;
   NodeIndex root_ = none;

@@ -108,6 +108,7 @@ void Model::choose_bodies() {
   for (BodyIndex i = 0; i < size(); ++i) {
     const Body& b = body(i);
     mobility_.push_back(b.drive != nullptr ? Mobility::driven : b.entity->mobility());
+    roles_.push_back({mobility_[i] == Mobility::free, b.entity->is_field()});
     shapes_.push_back(b.collision_shape());
     const bool accelerates = scene_.gravity == GravityMode::acceleration;
     const double weight = is_free(i) ? b.G * (accelerates ? b.mass : 1.0) : 0.0;
@@ -183,37 +184,16 @@ void Model::choose_rotation() {
   decide(tally.decisions("rotation"));
 }
 
-bool Model::can_interact(BodyIndex a, BodyIndex b) const {
-  if (!is_free(a) && !is_free(b)) {
-    return false;
-  }
-  // A field acts on what moves freely; two fields have nothing to say to each other.
-  return !(is_field(a) && is_field(b)) && !(is_field(a) && !is_free(b)) &&
-         !(is_field(b) && !is_free(a));
-}
-
 /// Which pairs can ever meet.
 void Model::choose_pairs() {
-  interacts_.assign(size() * size(), false);
-  std::size_t left_out = 0;
-  for (BodyIndex a = 0; a < size(); ++a) {
-    for (BodyIndex b = a + 1; b < size(); ++b) {
-      const bool meet = can_interact(a, b);
-      interacts_[a * size() + b] = meet;
-      interacts_[b * size() + a] = meet;
-      if (meet || !options_.prune_pairs) {
-        pairs_.emplace_back(a, b);
-      } else {
-        ++left_out;
-      }
-    }
-  }
+  pairs_ = BodyPairs(roles_, !options_.prune_pairs);
   const std::size_t all = size() * (size() - 1) / 2;
-  decide({{"pairs", fmt::format("{} of {} are tested", pairs_.size(), all),
-           left_out == 0 ? "nothing is left out"
+  const std::size_t tested = pairs_.size();
+  decide({{"pairs", fmt::format("{} of {} are tested", tested, all),
+           tested == all ? "nothing is left out"
                          : fmt::format("{} cannot do anything to each other: neither moves freely, "
                                        "or a field would act on what does not",
-                                       left_out)},
+                                       all - tested)},
           choose_broad_phase()});
 }
 

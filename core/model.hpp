@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/body_pairs.hpp"
 #include "core/scene.hpp"
 
 #include <string>
@@ -17,8 +18,6 @@ struct ModelOptions {
   bool prune_pairs = true;       ///< pairs that can never interact are never tested
   std::string_view broad_phase;  ///< finds which of those are near; empty: the model chooses
 };
-
-using BodyPair = std::pair<BodyIndex, BodyIndex>;  ///< first < second
 
 /// A hand and the body that its closed fist holds.
 struct Grip {
@@ -51,7 +50,7 @@ class Model {
   [[nodiscard]] Mobility mobility(BodyIndex i) const { return mobility_[i]; }
   [[nodiscard]] bool is_free(BodyIndex i) const { return mobility_[i] == Mobility::free; }
   [[nodiscard]] bool rotates(BodyIndex i) const { return rotates_[i]; }
-  [[nodiscard]] bool is_field(BodyIndex i) const { return entity(i).is_field(); }
+  [[nodiscard]] bool is_field(BodyIndex i) const { return roles_[i].field; }
   /// Inertia as islands and impact laws see it; mass -1 for bodies that are not free.
   [[nodiscard]] const BodyInertia& inertia(BodyIndex i) const { return inertia_[i]; }
   /// Gravity on body i and what else is uniform (buoyancy), N; 0 for bodies that are not free.
@@ -59,9 +58,9 @@ class Model {
 
   /// Pairs to test, in the order of creation: those that can ever interact; with `prune_pairs` off
   /// all pairs, of which still only those do anything to each other that `interacts`.
-  [[nodiscard]] const std::vector<BodyPair>& pairs() const { return pairs_; }
+  [[nodiscard]] const BodyPairs& pairs() const { return pairs_; }
   [[nodiscard]] bool interacts(BodyIndex a, BodyIndex b) const {
-    return interacts_[a * size() + b];
+    return a != b && interaction(roles_[a], roles_[b]);
   }
   /// Free bodies in the order of their names: what adds up over bodies does so in this order, so
   /// that no sum depends on the order in the file.
@@ -70,9 +69,13 @@ class Model {
   [[nodiscard]] const std::vector<Island>& islands() const { return islands_; }
   /// Island of a free body.
   [[nodiscard]] std::size_t island_of(BodyIndex i) const { return island_of_[i]; }
-  /// True if `auto` takes the closed form for this island: a parabola, and a rotation that is left
-  /// out or of constant rate.
+  /// True if the island moves in closed form: a parabola, and a rotation that is left out or of
+  /// constant rate.
   [[nodiscard]] bool closed_form(std::size_t island) const { return closed_form_[island]; }
+  /// Name of the integrator that `auto` takes for this island.
+  [[nodiscard]] std::string_view integrator(std::size_t island) const {
+    return closed_form_[island] ? "closed-form" : "dopri5";
+  }
   /// Name of the broad phase that the scene needs.
   [[nodiscard]] std::string_view broad_phase() const { return broad_phase_; }
 
@@ -99,7 +102,6 @@ class Model {
   void choose_grips();
   void choose_motion();
   [[nodiscard]] bool keeps_constant_rate(BodyIndex i) const;
-  [[nodiscard]] bool can_interact(BodyIndex a, BodyIndex b) const;
   void decide(std::vector<Decision> decisions);
 
   Scene scene_;
@@ -111,8 +113,8 @@ class Model {
   std::vector<BodyInertia> inertia_;
   std::vector<Vector3> gravity_force_;
   std::vector<bool> turned_by_force_;  ///< a force involves its rotation
-  std::vector<BodyPair> pairs_;
-  std::vector<bool> interacts_;
+  std::vector<PairRole> roles_;
+  BodyPairs pairs_;
   std::vector<Island> islands_;
   std::vector<std::shared_ptr<const Force>> island_forces_;  ///< owns what islands refer to
   std::vector<std::size_t> island_of_;

@@ -57,6 +57,12 @@ std::shared_ptr<const Port> find(std::string_view port, std::string_view name,
 /// What `auto` means where a detector needs a stepper that finds impacts by itself.
 constexpr std::string_view rootfinding_integrator = "cvode-adams";
 
+using NamedBroadPhase = std::pair<std::string_view, std::unique_ptr<BroadPhase> (*)(std::size_t)>;
+constexpr std::array<NamedBroadPhase, 3> broad_phase_catalogue{
+    {{"all-pairs", ccd::make_all_pairs},
+     {"sweep-and-prune", ccd::make_sweep_and_prune},
+     {"dynamic-tree", ccd::make_dynamic_tree}}};
+
 bool has_integrator(std::string_view name) {
   const auto all = integrators();
   return std::any_of(all.begin(), all.end(),
@@ -122,10 +128,8 @@ std::shared_ptr<const ImpactLaw> find_impact_law(std::string_view name) {
 
 IslandStepper find_integrator(std::string_view name, const StepperOptions& options) {
   if (name == "auto") {
-    const StepperFactory closed_form = find_entry("closed-form").make;
-    const StepperFactory general = find_entry("dopri5").make;
-    return [=](const Model& model, std::size_t island) {
-      return model.closed_form(island) ? closed_form(options) : general(options);
+    return [options](const Model& model, std::size_t island) {
+      return find_entry(model.integrator(island)).make(options);
     };
   }
   return
@@ -142,20 +146,21 @@ IslandStepper find_watching_integrator(std::string_view name, const StepperOptio
 }
 
 std::span<const std::string_view> broad_phases() {
-  static constexpr std::array<std::string_view, 3> names{"all-pairs", "sweep-and-prune",
-                                                         "dynamic-tree"};
+  static const std::vector<std::string_view> names = [] {
+    std::vector<std::string_view> made;
+    for (const auto& [name, make] : broad_phase_catalogue) {
+      made.push_back(name);
+    }
+    return made;
+  }();
   return names;
 }
 
 BroadPhaseFactory find_broad_phase(std::string_view name) {
-  if (name == "all-pairs") {
-    return ccd::make_all_pairs;
-  }
-  if (name == "sweep-and-prune") {
-    return ccd::make_sweep_and_prune;
-  }
-  if (name == "dynamic-tree") {
-    return ccd::make_dynamic_tree;
+  for (const auto& [known, make] : broad_phase_catalogue) {
+    if (known == name) {
+      return make;
+    }
   }
   unknown("broad phase", name, broad_phases());
 }

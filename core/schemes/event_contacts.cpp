@@ -277,7 +277,7 @@ void EventContacts::leave_support(BodyIndex i, Instant t) {
 }
 
 void EventContacts::carry_riders(BodyIndex surface, Instant t) {
-  for (const BodyIndex i : predictor_.partners(surface)) {
+  for (const BodyIndex i : run_.agenda.by_name()) {
     if (motions_.is_supported_by(i, surface)) {
       motions_.book(i, t);
       motions_.bring(i, t);

@@ -11,19 +11,20 @@ inline namespace core {
 EventPredictor::EventPredictor(EventRun& run, const EventMotions& motions, const Grasps& grasps,
                                const Method& method)
     : run_(run), motions_(motions), grasps_(grasps), bodies_(run.model.size()) {
-  for (const auto& [a, b] : run.model.pairs()) {
-    bodies_[a].partners.push_back(b);
-    bodies_[b].partners.push_back(a);
-  }
   if (run.model.broad_phase() != "all-pairs") {
     broad_phase_ = method.broad_phase(run.model.size());
     swept_bounds_ = method.swept_bounds;
+    return;
+  }
+  for (const auto& [a, b] : run.model.pairs()) {
+    bodies_[a].partners.push_back(b);
+    bodies_[b].partners.push_back(a);
   }
 }
 
 void EventPredictor::predict(BodyIndex i, Instant t, BodyIndex except) {
   if (!broad_phase_) {
-    for (const BodyIndex j : partners(i)) {
+    for (const BodyIndex j : bodies_[i].partners) {
       if (j != except) {
         predict_pair(i, j, t);
       }

@@ -24,16 +24,11 @@ class EventPredictor {
   void predict(BodyIndex i, Instant t, BodyIndex except);
   void predict_pair(BodyIndex i, BodyIndex j, Instant t);
 
-  /// What i can interact with, in the order of the model's pairs.
-  [[nodiscard]] const std::vector<BodyIndex>& partners(BodyIndex i) const {
-    return bodies_[i].partners;
-  }
-
   void persist(Archive& archive);
 
  private:
   struct Watched {
-    std::vector<BodyIndex> partners;
+    std::vector<BodyIndex> partners;  ///< what it can interact with, where there is no broad phase
     double reach = 0.0;  ///< how far it goes before its neighbours are looked up again, m
     Aabb swept{};        ///< what the broad phase was told
 

@@ -15,32 +15,60 @@ double finite_radius(const Shape& shape) {
   return std::isfinite(radius) ? radius : 0.0;
 }
 
-bool held(const BodyPair& pair, std::span<const char> in_hand) {
-  return !in_hand.empty() && (in_hand[pair.first] != 0 || in_hand[pair.second] != 0);
+bool held(BodyIndex a, BodyIndex b, std::span<const char> in_hand) {
+  return !in_hand.empty() && (in_hand[a] != 0 || in_hand[b] != 0);
 }
 
 }  // namespace
 
 PenetrationProbe::PenetrationProbe(const Model& model)
-    : model_(model), detector_(find_detector("certified")) {
-  for (const BodyPair& pair : model.pairs()) {
-    const auto [a, b] = pair;
-    const bool solids = !model.is_field(a) && !model.is_field(b);
-    if (solids && (model.is_free(a) || model.is_free(b))) {
-      pairs_.push_back({pair, bounding_radius(model.shape(a)) + bounding_radius(model.shape(b))});
+    : model_(model), detector_(find_detector("certified")), bounds_(swept_bounds()) {
+  if (model.broad_phase() != "all-pairs") {
+    broad_phase_ = find_broad_phase(model.broad_phase())(model.size());
+  }
+}
+
+bool PenetrationProbe::can_penetrate(BodyIndex a, BodyIndex b) const {
+  return !model_.is_field(a) && !model_.is_field(b) && (model_.is_free(a) || model_.is_free(b));
+}
+
+/// Pairs that could penetrate, in the order of the model's, until `visit` says that it is enough.
+template <typename Visit>
+void PenetrationProbe::for_each_near_pair(std::span<const BodyState> bodies,
+                                          const Visit& visit) const {
+  if (!broad_phase_) {
+    for (const auto& [a, b] : model_.pairs()) {
+      if (can_penetrate(a, b) && !visit(a, b)) {
+        return;
+      }
+    }
+    return;
+  }
+  for (BodyIndex i = 0; i < model_.size(); ++i) {
+    const Motion still = Motion::at_rest(Instant{}, bodies[i].pose);
+    broad_phase_->update(i, bounds_({model_.shape(i), still}, {Instant{}, 0.0}));
+  }
+  std::vector<BodyIndex> near;
+  for (BodyIndex a = 0; a < model_.size(); ++a) {
+    near.clear();
+    broad_phase_->candidates(a, near);
+    for (const BodyIndex b : near) {
+      if (a < b && can_penetrate(a, b) && !visit(a, b)) {
+        return;
+      }
     }
   }
 }
 
-double PenetrationProbe::depth(const Pair& pair, std::span<const BodyState> bodies) const {
-  const auto [a, b] = pair.bodies;
+double PenetrationProbe::depth(BodyIndex a, BodyIndex b, std::span<const BodyState> bodies) const {
   const Pose& pose_a = bodies[a].pose;
   const Pose& pose_b = bodies[b].pose;
-  if ((pose_a.position - pose_b.position).norm() > pair.reach) {
-    return 0.0;
-  }
   const Shape& shape_a = model_.shape(a);
   const Shape& shape_b = model_.shape(b);
+  const double reach = bounding_radius(shape_a) + bounding_radius(shape_b);
+  if ((pose_a.position - pose_b.position).norm() > reach) {
+    return 0.0;
+  }
   const double gap = detector_->overlap(shape_a, pose_a, shape_b, pose_b).gap;
   const double scale = pose_a.position.norm() + pose_b.position.norm() + finite_radius(shape_a) +
                        finite_radius(shape_b);
@@ -51,24 +79,27 @@ double PenetrationProbe::depth(const Pair& pair, std::span<const BodyState> bodi
 std::optional<Penetration> PenetrationProbe::deepest(std::span<const BodyState> bodies,
                                                      std::span<const char> in_hand) const {
   Penetration found;
-  for (const Pair& pair : pairs_) {
-    const double d = held(pair.bodies, in_hand) ? 0.0 : depth(pair, bodies);
+  for_each_near_pair(bodies, [&](BodyIndex a, BodyIndex b) {
+    const double d = held(a, b, in_hand) ? 0.0 : depth(a, b, bodies);
     if (d > found.depth) {
-      found = {pair.bodies, d};
+      found = {{a, b}, d};
     }
-  }
+    return true;
+  });
   return found.depth > 0.0 ? std::optional(found) : std::nullopt;
 }
 
 std::optional<Penetration> PenetrationProbe::first(std::span<const BodyState> bodies,
                                                    std::span<const char> in_hand) const {
-  for (const Pair& pair : pairs_) {
-    const double d = held(pair.bodies, in_hand) ? 0.0 : depth(pair, bodies);
+  std::optional<Penetration> found;
+  for_each_near_pair(bodies, [&](BodyIndex a, BodyIndex b) {
+    const double d = held(a, b, in_hand) ? 0.0 : depth(a, b, bodies);
     if (d > 0.0) {
-      return Penetration{pair.bodies, d};
+      found = Penetration{{a, b}, d};
     }
-  }
-  return std::nullopt;
+    return !found;
+  });
+  return found;
 }
 
 }  // namespace kairos::experiments

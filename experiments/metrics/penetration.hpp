@@ -2,10 +2,12 @@
 
 #include "core/contact_detector.hpp"
 #include "core/model.hpp"
+#include "core/scheme.hpp"
 
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace kairos::experiments {
 
@@ -18,6 +20,8 @@ struct Penetration {
 /// How deep solids are inside each other at one instant, by the exact distance of their shapes and
 /// whatever detector a run uses. Pairs of which neither is free are left alone: nobody could part
 /// them.
+///
+/// Where there are many bodies, only those are asked that a broad phase finds near each other.
 ///
 /// Tolerance (roundoff): what 16 eps times the coordinates and extents can account for is touching
 /// and not penetration; a ball at rest on a floor stands at a rounded height.
@@ -34,15 +38,15 @@ class PenetrationProbe {
                                                  std::span<const char> in_hand = {}) const;
 
  private:
-  struct Pair {
-    BodyPair bodies;
-    double reach;  ///< sum of the bounding radii, m; infinite with a half-space
-  };
-  [[nodiscard]] double depth(const Pair& pair, std::span<const BodyState> bodies) const;
+  [[nodiscard]] bool can_penetrate(BodyIndex a, BodyIndex b) const;
+  [[nodiscard]] double depth(BodyIndex a, BodyIndex b, std::span<const BodyState> bodies) const;
+  template <typename Visit>
+  void for_each_near_pair(std::span<const BodyState> bodies, const Visit& visit) const;
 
   const Model& model_;
   std::shared_ptr<const ContactDetector> detector_;
-  std::vector<Pair> pairs_;
+  std::unique_ptr<BroadPhase> broad_phase_;  ///< null where the model asks every pair
+  SweptBounds bounds_;
 };
 
 }  // namespace kairos::experiments

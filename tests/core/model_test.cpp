@@ -20,6 +20,8 @@ bool decided(const Model& model, const std::string& topic, const std::string& pa
   });
 }
 
+std::vector<BodyPair> listed(const BodyPairs& pairs) { return {pairs.begin(), pairs.end()}; }
+
 /// Pulls the second body to the first; says what it was shown.
 class Spring : public Force {
  public:
@@ -43,7 +45,7 @@ TEST_CASE("model: a ball over a floor has no orientation, no solver, one pair", 
   const Model model(read_scene(scenes + "bounce.toml"));
   CHECK_FALSE(model.rotates(1));
   CHECK(model.mobility(0) == Mobility::fixed);
-  CHECK(model.pairs() == std::vector<BodyPair>{{0, 1}});
+  CHECK(listed(model.pairs()) == std::vector<BodyPair>{{0, 1}});
   REQUIRE(model.islands().size() == 1);
   CHECK(model.closed_form(0));
   CHECK(model.gravity_force(1) == Vector3(0, -9.8, 0));
@@ -135,7 +137,7 @@ position = [0, -9, 0]
 drive = {frequency = 1, amplitude = [0, 1, 0], phase = 1.5707963267948966}
 )";
   const Model model(parse_scene(text, ""));
-  CHECK(model.pairs() == std::vector<BodyPair>{{0, 3}, {1, 3}, {2, 3}, {3, 4}});
+  CHECK(listed(model.pairs()) == std::vector<BodyPair>{{0, 3}, {1, 3}, {2, 3}, {3, 4}});
   CHECK(model.mobility(2) == Mobility::driven);
   CHECK(model.mobility(4) == Mobility::driven);
   CHECK(decided(model, "bodies", "follows its drive"));

@@ -1,0 +1,98 @@
+#pragma once
+
+#include "core/state.hpp"
+
+#include <cstddef>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+
+using BodyPair = std::pair<BodyIndex, BodyIndex>;  ///< first < second
+
+/// What decides whether a body can do anything to another.
+struct PairRole {
+  bool free = false;   ///< moves as impacts and forces tell it
+  bool field = false;  ///< acts on what overlaps it
+};
+
+/// Whether two bodies can do anything to each other: one of them moves freely, and if one is a
+/// field, the other is what moves freely, and no field.
+[[nodiscard]] constexpr bool interaction(PairRole a, PairRole b) {
+  if (a.field || b.field) {
+    return a.field ? b.free && !b.field : a.free;
+  }
+  return a.free || b.free;
+}
+
+/// The pairs of bodies that can interact, or all pairs, in the order of creation. Made one by one
+/// as they are asked for: a list of them would grow with the square of the bodies.
+class BodyPairs {
+ public:
+  BodyPairs() = default;
+  /// `all`: also those that cannot do anything to each other.
+  BodyPairs(std::vector<PairRole> roles, bool all) : roles_(std::move(roles)), all_(all) {}
+
+  class Iterator {
+   public:
+    using value_type = BodyPair;
+    using difference_type = std::ptrdiff_t;
+    using reference = BodyPair;
+    using iterator_category = std::input_iterator_tag;
+
+    Iterator() = default;
+    Iterator(const BodyPairs& pairs, BodyIndex a) : pairs_(&pairs), a_(a), b_(a) { ++*this; }
+
+    BodyPair operator*() const { return {a_, b_}; }
+    Iterator& operator++() {
+      do {
+        step();
+      } while (a_ < pairs_->roles_.size() && !pairs_->contains(a_, b_));
+      return *this;
+    }
+    Iterator operator++(int) {
+      const Iterator before = *this;
+      ++*this;
+      return before;
+    }
+    friend bool operator==(const Iterator& x, const Iterator& y) {
+      return x.a_ == y.a_ && x.b_ == y.b_;
+    }
+
+   private:
+    void step() {
+      const std::size_t n = pairs_->roles_.size();
+      if (++b_ >= n) {
+        b_ = ++a_ + 1;
+      }
+      if (b_ >= n) {
+        a_ = b_ = n;  // the end
+      }
+    }
+
+    const BodyPairs* pairs_ = nullptr;
+    BodyIndex a_ = 0;
+    BodyIndex b_ = 0;
+  };
+
+  [[nodiscard]] Iterator begin() const { return roles_.empty() ? end() : Iterator(*this, 0); }
+  [[nodiscard]] Iterator end() const {
+    return roles_.empty() ? Iterator() : Iterator(*this, roles_.size());
+  }
+  [[nodiscard]] bool empty() const { return begin() == end(); }
+  [[nodiscard]] std::size_t size() const {
+    return static_cast<std::size_t>(std::distance(begin(), end()));
+  }
+  [[nodiscard]] bool contains(BodyIndex a, BodyIndex b) const {
+    return all_ || interaction(roles_[a], roles_[b]);
+  }
+
+ private:
+  std::vector<PairRole> roles_;
+  bool all_ = false;
+};
+
+}  // namespace core
+}  // namespace kairos
