@@ -6,9 +6,9 @@
 #include "core/scene.hpp"
 #include "tests/catch.hpp"
 #include "tests/locations.hpp"
+#include "tests/temporary_folder.hpp"
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -359,14 +359,13 @@ TEST_CASE("bad tracks and frame times are named by file and line", "[scene][inpu
     int line;
     std::string key;
   };
-  const auto folder = std::filesystem::temp_directory_path() / "kairos-bad-tracks";
-  std::filesystem::create_directories(folder);
-  const std::string path = (folder / "track.csv").string();
+  const tests::TemporaryFolder folder;
+  const std::string path = folder.path("track.csv");
   const auto check = [&](const std::string& scene, const BadFile& bad) {
-    std::ofstream(path, std::ios::binary) << bad.text;
+    folder.file("track.csv", bad.text);
     INFO(bad.text);
     try {
-      (void)parse_scene(scene, (folder / "scene.toml").string());
+      (void)parse_scene(scene, folder.path("scene.toml"));
       FAIL("was not refused");
     } catch (const InputError& error) {
       INFO(error.what());
@@ -408,5 +407,4 @@ TEST_CASE("bad tracks and frame times are named by file and line", "[scene][inpu
   for (const BadFile& bad : frames) {
     check("frame = {csv = \"track.csv\"}\n" + floor_lines, bad);
   }
-  std::filesystem::remove_all(folder);
 }

@@ -6,9 +6,9 @@
 #include "core/off_file.hpp"
 #include "core/scene.hpp"
 #include "tests/catch.hpp"
+#include "tests/temporary_folder.hpp"
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -27,23 +27,18 @@ const std::string octahedron =
 /// A folder with models and a scene.
 class Folder {
  public:
-  Folder() : path_(std::filesystem::temp_directory_path() / "kairos-def-test") {
-    std::filesystem::create_directories(path_ / "object_files");
+  Folder() {
+    std::filesystem::create_directories(path("object_files"));
     write("object_files/cube.off", cube);
     write("object_files/ball.off", octahedron);
     write("object_files/flat.off", "OFF 3 1 3\n0 0 0\n1 0 0\n0 0 1\n3 0 1 2\n");
     write("object_files/broken.off", cube.substr(0, cube.size() / 2));
   }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() { std::filesystem::remove_all(path_); }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name, std::ios::binary) << text;
-  }
-  [[nodiscard]] std::string path(const std::string& name) const { return (path_ / name).string(); }
+  void write(const std::string& name, const std::string& text) const { folder_.file(name, text); }
+  [[nodiscard]] std::string path(const std::string& name) const { return folder_.path(name); }
 
  private:
-  std::filesystem::path path_;
+  tests::TemporaryFolder folder_;
 };
 
 /// The five lines that survive, with a model of ours.

@@ -2,9 +2,7 @@
 
 #include "core/error.hpp"
 #include "tests/catch.hpp"
-
-#include <filesystem>
-#include <fstream>
+#include "tests/temporary_folder.hpp"
 
 using namespace kairos;
 
@@ -57,12 +55,10 @@ TEST_CASE("frames: jitter and stalls are pure functions of the frame, with the m
 }
 
 TEST_CASE("frames: a CSV with and without a header", "[frames]") {
-  const auto path = std::filesystem::temp_directory_path() / "kairos-frames.csv";
-  const auto read = [&path](const std::string& text) {
-    std::ofstream(path, std::ios::binary) << text;
-    return std::get<ListedFrames>(read_frame_csv(path.string())).durations;
+  const tests::TemporaryFolder folder;
+  const auto read = [&folder](const std::string& text) {
+    return std::get<ListedFrames>(read_frame_csv(folder.file("frames.csv", text))).durations;
   };
   CHECK(read("0.1\n0.2\n\n# a stall\n1\n") == std::vector<double>{0.1, 0.2, 1.0});
   CHECK(read("index,duration\r\n0,0.1\r\n1,0.2") == std::vector<double>{0.1, 0.2});
-  std::filesystem::remove(path);
 }

@@ -8,11 +8,10 @@
 #include "experiments/simulation.hpp"
 #include "tests/catch.hpp"
 #include "tests/experiments/ledger_check.hpp"
+#include "tests/temporary_folder.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <string>
 #include <vector>
@@ -53,19 +52,13 @@ position = [-3, 1, 0]
 
 class Folder {
  public:
-  Folder() : path_(std::filesystem::temp_directory_path() / "kairos-hand-test") {
-    std::filesystem::create_directories(path_);
-    std::ofstream(path_ / "hand.csv") << track;
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder() { folder_.file("hand.csv", track); }
   [[nodiscard]] Scene scene(const std::vector<Override>& overrides = {}) const {
-    return parse_scene(text, (path_ / "scene.toml").string(), overrides);
+    return parse_scene(text, folder_.path("scene.toml"), overrides);
   }
 
  private:
-  std::filesystem::path path_;
+  tests::TemporaryFolder folder_;
 };
 
 /// Every scheme with an integrator that is exact in flight.

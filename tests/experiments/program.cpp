@@ -6,7 +6,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -70,39 +69,6 @@ Outcome kairos_program(const std::vector<std::string>& arguments,
   }
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status),
           surroundings.output.empty() ? read_all(out) : "", read_all(err)};
-}
-
-TemporaryFolder::TemporaryFolder() {
-  std::string name = (std::filesystem::temp_directory_path() / "kairos-test-XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr) {
-    throw std::system_error(errno, std::generic_category(), name);
-  }
-  folder_ = name;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
-}
-
-std::string TemporaryFolder::file(std::string_view name, std::string_view text) const {
-  std::ofstream(folder_ / name, std::ios::binary) << text;
-  return path(name);
-}
-
-std::vector<std::string> TemporaryFolder::entries(std::string_view below) const {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_ / below)) {
-    names.push_back(entry.path().lexically_relative(folder_ / below).string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-std::string read_all(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
 }
 
 }  // namespace kairos::tests

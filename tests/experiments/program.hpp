@@ -1,8 +1,8 @@
 #pragma once
 
-#include <filesystem>
+#include "tests/temporary_folder.hpp"
+
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace kairos::tests {
@@ -25,25 +25,5 @@ struct Surroundings {
 /// Runs the built program as a person would.
 [[nodiscard]] Outcome kairos_program(const std::vector<std::string>& arguments,
                                      const Surroundings& surroundings = {});
-
-/// A folder of its own for one test; gone afterwards.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder();
-
-  [[nodiscard]] std::string path(std::string_view name) const { return (folder_ / name).string(); }
-  /// Writes a file and returns its path.
-  std::string file(std::string_view name, std::string_view text) const;
-  /// Names of all that is in it, hidden files included, sorted.
-  [[nodiscard]] std::vector<std::string> entries(std::string_view below = "") const;
-
- private:
-  std::filesystem::path folder_;
-};
-
-[[nodiscard]] std::string read_all(const std::string& path);
 
 }  // namespace kairos::tests
