@@ -1,4 +1,5 @@
 #include "core/schemes/impact_history.hpp"
+
 #include "tests/catch.hpp"
 
 #include <cmath>
