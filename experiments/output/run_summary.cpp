@@ -174,8 +174,11 @@ std::string summary_text(const FinishedRun& run) {
     fmt::format_to(std::back_inserter(text), "{:<22}{}\n", name, value);
   };
   line("scene", run.model.scene().name);
-  line("method", fmt::format("{} + {} ({}) + {} + {}", method.scheme, method.integrator,
-                             integrators_in_use(run), method.detector, method.impact));
+  const std::string in_use = integrators_in_use(run);
+  const bool as_named = in_use.empty() || in_use == method.integrator;
+  line("method",
+       fmt::format("{} + {}{} + {} + {}", method.scheme, method.integrator,
+                   as_named ? "" : fmt::format(" ({})", in_use), method.detector, method.impact));
   line(status_name(run.result.status), fmt::format("t = {} s", run.result.end.seconds));
   line("frames", fmt::format("{}", run.result.cost.frames));
   line("integrator steps", fmt::format("{}, {} right-hand sides", run.result.cost.steps,
