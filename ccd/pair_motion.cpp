@@ -132,6 +132,12 @@ PairMotion::PairMotion(const MovingShape& a, const MovingShape& b, const Window&
   radius_b_ = half_b_.norm() * (1.0 + 4.0 * u);
   error_reach_ = a.motion.error_radius + b.motion.error_radius;
   reach_ = (box_a.radius + box_b.radius) + error_reach_;
+  if (const auto* half_space = std::get_if<HalfSpace>(&b.shape)) {
+    plane_b_ = true;
+    normal_b_ = half_space->normal_B;
+    // Unit to the roundings of who gave it; the product below is rounded too.
+    rotation_error_ += (normal_b_.array() != 0.0).count() == 1 ? 0.0 : 16.0 * u;
+  }
   oriented_a_ = box_a.oriented;
   oriented_b_ = box_b.oriented;
   turns_a_ = oriented_a_ && a.motion.rotation != RotationKind::fixed;
@@ -231,6 +237,9 @@ void PairMotion::evaluate(double t, Kinematics& k) const {
   }
   if (oriented_b_) {
     orient(*motion_b_, rate_b_, s_b_ + t, turns_b_, k.R_WB, k.w_b);
+    if (plane_b_) {
+      k.R_WB.col(1) = (k.R_WB * normal_b_).eval();
+    }
   } else {
     k.w_b.setZero();
   }

@@ -12,8 +12,8 @@ struct Kinematics {
   Vector3 v;       ///< its rate, m/s
   Vector3 c;       ///< d(t + h) = d + v h + c h^2, up to `TurnBounds::bend` h^2, m/s^2
   Matrix3 R_WA;    ///< columns: axes of a
-  Matrix3 R_WB;
-  Vector3 w_a;  ///< angular velocities, rad/s
+  Matrix3 R_WB;    ///< of a half-space: `R_WB.col(1)` is its normal
+  Vector3 w_a;     ///< angular velocities, rad/s
   Vector3 w_b;
   double error = 0.0;       ///< bound of the rounding error of any separation, m
   double rate_error = 0.0;  ///< the same of its rate, m/s
@@ -82,6 +82,8 @@ class PairMotion {
   double radius_b_ = 0.0;
   double reach_ = 0.0;
   double error_reach_ = 0.0;
+  Vector3 normal_b_ = Vector3::UnitY();  ///< of a half-space, in the frame of b
+  bool plane_b_ = false;
   bool oriented_a_ = false;  ///< the orientation matters: a box or a half-space
   bool oriented_b_ = false;
   bool turns_a_ = false;

@@ -20,8 +20,10 @@ bool overlap(const Sphere& sphere, const Pose& pose_s, const Box& box, const Pos
   return outside.squaredNorm() <= sphere.radius * sphere.radius;
 }
 
-bool overlap(const Sphere& sphere, const Pose& pose_s, const HalfSpace&, const Pose& pose_h) {
-  return half_space_normal(pose_h).dot(pose_s.position - pose_h.position) <= sphere.radius;
+bool overlap(const Sphere& sphere, const Pose& pose_s, const HalfSpace& half_space,
+             const Pose& pose_h) {
+  return half_space_normal(half_space, pose_h).dot(pose_s.position - pose_h.position) <=
+         sphere.radius;
 }
 
 bool overlap(const Box& a, const Pose& pose_a, const Box& b, const Pose& pose_b) {
@@ -31,8 +33,8 @@ bool overlap(const Box& a, const Pose& pose_a, const Box& b, const Pose& pose_b)
 /// Half the extent of a box along a unit direction given in the world.
 double support(const Box& box, const Vector3& n_B) { return box.half_extents.dot(n_B.cwiseAbs()); }
 
-bool overlap(const Box& box, const Pose& pose_b, const HalfSpace&, const Pose& pose_h) {
-  const Vector3 n = half_space_normal(pose_h);
+bool overlap(const Box& box, const Pose& pose_b, const HalfSpace& half_space, const Pose& pose_h) {
+  const Vector3 n = half_space_normal(half_space, pose_h);
   return n.dot(pose_b.position - pose_h.position) <=
          support(box, pose_b.orientation.conjugate() * n);
 }
@@ -77,14 +79,16 @@ Overlap above_plane(double gap, const Vector3& up, const Vector3& lowest) {
   return {gap <= 0.0, gap, -up, lowest - up * (0.5 * gap)};
 }
 
-Overlap measure(const Sphere& sphere, const Pose& pose_s, const HalfSpace&, const Pose& pose_h) {
-  const Vector3 n = half_space_normal(pose_h);
+Overlap measure(const Sphere& sphere, const Pose& pose_s, const HalfSpace& half_space,
+                const Pose& pose_h) {
+  const Vector3 n = half_space_normal(half_space, pose_h);
   const double gap = n.dot(pose_s.position - pose_h.position) - sphere.radius;
   return above_plane(gap, n, pose_s.position - n * sphere.radius);
 }
 
-Overlap measure(const Box& box, const Pose& pose_b, const HalfSpace&, const Pose& pose_h) {
-  const Vector3 n = half_space_normal(pose_h);
+Overlap measure(const Box& box, const Pose& pose_b, const HalfSpace& half_space,
+                const Pose& pose_h) {
+  const Vector3 n = half_space_normal(half_space, pose_h);
   const Vector3 down_B = -(pose_b.orientation.conjugate() * n);
   const double gap = n.dot(pose_b.position - pose_h.position) - support(box, down_B);
   // Roundoff of a rotated extent: 1024 u of the size, as for clipped faces.
@@ -137,13 +141,13 @@ bool shapes_overlap(const Shape& a, const Pose& pose_a, const Shape& b, const Po
     if (const auto* box = std::get_if<Box>(&b)) {
       return overlap(*sphere, pose_a, *box, pose_b);
     }
-    return overlap(*sphere, pose_a, HalfSpace{}, pose_b);
+    return overlap(*sphere, pose_a, std::get<HalfSpace>(b), pose_b);
   }
   if (const auto* box = std::get_if<Box>(&a)) {
     if (const auto* other = std::get_if<Box>(&b)) {
       return overlap(*box, pose_a, *other, pose_b);
     }
-    return overlap(*box, pose_a, HalfSpace{}, pose_b);
+    return overlap(*box, pose_a, std::get<HalfSpace>(b), pose_b);
   }
   return false;
 }
@@ -159,13 +163,13 @@ Overlap measure_overlap(const Shape& a, const Pose& pose_a, const Shape& b, cons
     if (const auto* box = std::get_if<Box>(&b)) {
       return measure(*sphere, pose_a, *box, pose_b);
     }
-    return measure(*sphere, pose_a, HalfSpace{}, pose_b);
+    return measure(*sphere, pose_a, std::get<HalfSpace>(b), pose_b);
   }
   if (const auto* box = std::get_if<Box>(&a)) {
     if (const auto* other = std::get_if<Box>(&b)) {
       return measure(*box, pose_a, *other, pose_b);
     }
-    return measure(*box, pose_a, HalfSpace{}, pose_b);
+    return measure(*box, pose_a, std::get<HalfSpace>(b), pose_b);
   }
   return {false, std::numeric_limits<double>::max(), Vector3::UnitY(), Vector3::Zero()};
 }

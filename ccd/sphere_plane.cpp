@@ -16,15 +16,18 @@ struct Projection {
   double e0 = 0.0, e1 = 0.0, e2 = 0.0;
 };
 
-/// Along +y exactly (nothing is rounded), or along any n: off by 8 u for n and 3 u for the product.
-struct AlongY {
-  double operator()(const Vector3& x) const { return x[1]; }
+/// Along an axis exactly (nothing is rounded), or along any n: off by 8 u for a rotation (of
+/// three coordinates) and 3 u for each product.
+struct AlongAxis {
+  int axis;
+  double sign;
+  double operator()(const Vector3& x) const { return sign * x[axis]; }
   double error(const Vector3& /*x*/) const { return 0.0; }
 };
 struct Along {
   const Vector3& n;
   double operator()(const Vector3& x) const { return n.dot(x); }
-  double error(const Vector3& x) const { return 12.0 * u * x.lpNorm<1>(); }
+  double error(const Vector3& x) const { return 24.0 * u * x.lpNorm<1>(); }
 };
 
 template <typename Direction>
@@ -105,26 +108,31 @@ QuadraticGap gap_along(const Motion& sphere, double s, const Motion& plane, doub
 /// A sphere and a plane in motion, and the gap between them.
 struct SphereAbovePlane {
   const Motion& sphere;
+  const HalfSpace& half_space;
   const Motion& plane;
   const Window& window;
   double radius;
-  bool level;  ///< the normal is exactly +y
   Vector3 n;
   QuadraticGap gap;
 
-  SphereAbovePlane(const Sphere& shape, const Motion& motion, const Motion& plane_,
-                   const Window& window_)
-      : sphere(motion), plane(plane_), window(window_), radius(shape.radius) {
+  SphereAbovePlane(const Sphere& shape, const Motion& motion, const HalfSpace& half_space_,
+                   const Motion& plane_, const Window& window_)
+      : sphere(motion),
+        half_space(half_space_),
+        plane(plane_),
+        window(window_),
+        radius(shape.radius) {
     const Vector4& q = plane.quaternion[0];
     const double s = start_of(sphere, window);
     const double s_p = start_of(plane, window);
     const double reach = radius + (sphere.error_radius + plane.error_radius);
-    level = q[1] == 0.0 && q[2] == 0.0 && q[3] == 0.0;
-    if (level) {
-      n = Vector3::UnitY();
-      gap = gap_along(sphere, s, plane, s_p, reach, AlongY{});
+    const bool turned = q[1] != 0.0 || q[2] != 0.0 || q[3] != 0.0;
+    n = turned ? Vector3(rotation_matrix(Quaternion(q[0], q[1], q[2], q[3])) * half_space.normal_B)
+               : half_space.normal_B;
+    int axis = 0;
+    if (n.cwiseAbs().maxCoeff(&axis) == 1.0 && (n.array() != 0.0).count() == 1) {
+      gap = gap_along(sphere, s, plane, s_p, reach, AlongAxis{axis, n[axis]});
     } else {
-      n = rotation_matrix(Quaternion(q[0], q[1], q[2], q[3])).col(1);
       gap = gap_along(sphere, s, plane, s_p, reach, Along{n});
     }
   }
@@ -136,7 +144,7 @@ struct SphereAbovePlane {
   void complete(TimeOfImpact& toi) const {
     Vector3 centre;
     double height = 0.0;
-    const Vector3 up = half_space_normal({plane.position[0], plane.orientation(0.0)});
+    const Vector3 up = half_space_normal(half_space, {plane.position[0], plane.orientation(0.0)});
     const double first = toi.t_lo;
     double back = ulp(toi.t_lo);
     for (int attempt = 0; attempt < 40; ++attempt) {
@@ -175,7 +183,7 @@ std::optional<TimeOfImpact> sphere_plane_impact(const MovingShape& a, const Movi
   if (sphere == nullptr) {
     return std::nullopt;
   }
-  const SphereAbovePlane pair(*sphere, a.motion, b.motion, window);
+  const SphereAbovePlane pair(*sphere, a.motion, std::get<HalfSpace>(b.shape), b.motion, window);
   std::optional<TimeOfImpact> toi =
       descent_answer(first_descent(pair.gap, pair.touch()), window.duration);
   if (toi->status != ToiStatus::separated) {
@@ -190,7 +198,7 @@ std::optional<TimeOfImpact> sphere_plane_separation(const MovingShape& a, const 
   if (sphere == nullptr) {
     return std::nullopt;
   }
-  const SphereAbovePlane pair(*sphere, a.motion, b.motion, window);
+  const SphereAbovePlane pair(*sphere, a.motion, std::get<HalfSpace>(b.shape), b.motion, window);
   TimeOfImpact toi;
   toi.normal = -pair.n;
   if (pair.gap.c0 > pair.touch()) {

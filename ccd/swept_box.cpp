@@ -77,8 +77,8 @@ double local(const Motion& motion, const Window& window, double t) {
 
 Reach swept_reach(const Shape& shape, const Motion& motion, double s0, double s1,
                   const Vector3& n) {
-  if (std::holds_alternative<HalfSpace>(shape)) {
-    const Vector3 normal = half_space_normal(motion.pose(s0));
+  if (const auto* half_space = std::get_if<HalfSpace>(&shape)) {
+    const Vector3 normal = half_space_normal(*half_space, motion.pose(s0));
     if (motion.rotation == RotationKind::fixed && normal.dot(n) == 1.0) {
       return {-infinity, translation_reach(motion.position, s0, s1, n).upper + motion.error_radius};
     }
@@ -146,14 +146,14 @@ bool swept_shapes_overlap(const MovingShape& a, const MovingShape& b, const Wind
   const double a1 = local(a.motion, window, window.duration);
   const double b0 = local(b.motion, window, 0.0);
   const double b1 = local(b.motion, window, window.duration);
-  if (std::holds_alternative<HalfSpace>(b.shape)) {
+  if (const auto* half_space = std::get_if<HalfSpace>(&b.shape)) {
     if (std::holds_alternative<HalfSpace>(a.shape)) {
       return false;
     }
     if (b.motion.rotation != RotationKind::fixed) {
       return true;
     }
-    const Vector3 n = half_space_normal(b.motion.pose(b0));
+    const Vector3 n = half_space_normal(*half_space, b.motion.pose(b0));
     return swept_reach(a.shape, a.motion, a0, a1, n).lower <=
            translation_reach(b.motion.position, b0, b1, n).upper + b.motion.error_radius;
   }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace kairos {
 inline namespace core {
@@ -86,7 +87,9 @@ Vector3 direction(const Item& item, const Vector3& v) {
   if (!(norm > 0.0)) {
     item.fail("has length 0; allowed: any other direction");
   }
-  return (v / norm).normalized();
+  // One that is unit to its roundings stays as it was written.
+  const bool unit = std::abs(v.squaredNorm() - 1.0) <= 4.0 * std::numeric_limits<double>::epsilon();
+  return unit ? v : (v / norm).normalized();
 }
 
 Quaternion read_orientation(const TableReader& table) {
@@ -107,7 +110,7 @@ Quaternion read_orientation(const TableReader& table) {
 }
 
 /// `normal` is told in the world, as it is at the start, and kept in the body. A half-space has no
-/// other shape than its normal, so there it gives the orientation.
+/// other shape than its normal.
 void read_normal(const TableReader& table, Body& body) {
   const auto item = table.find("normal");
   if (!item) {
@@ -118,15 +121,13 @@ void read_normal(const TableReader& table, Body& body) {
                            body.entity->kind()));
   }
   const Vector3 normal = direction(*item, item->vector(limits::component));
-  Quaternion& orientation = body.initial.pose.orientation;
-  if (std::holds_alternative<HalfSpace>(body.shape)) {
+  body.normal_B = body.initial.pose.orientation.conjugate() * normal;
+  if (auto* half_space = std::get_if<HalfSpace>(&body.shape)) {
     if (table.has("orientation") || table.has("axis_angle")) {
       item->fail("an orientation is given too; allowed: one of them for a half-space");
     }
-    orientation = Quaternion::FromTwoVectors(Vector3::UnitY(), normal).normalized();
-    return;
+    half_space->normal_B = normal;
   }
-  body.normal_B = orientation.conjugate() * normal;
 }
 
 Bounds read_bounds(const TableReader& table, const Body& body, Bounds fallback) {

@@ -64,7 +64,9 @@ Box bounding_box(const Shape& shape) {
       shape);
 }
 
-Vector3 half_space_normal(const Pose& pose) { return pose.orientation * Vector3::UnitY(); }
+Vector3 half_space_normal(const HalfSpace& half_space, const Pose& pose) {
+  return pose.orientation * half_space.normal_B;
+}
 
 }  // namespace core
 }  // namespace kairos

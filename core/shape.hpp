@@ -16,8 +16,12 @@ struct Sphere {
 struct Box {
   Vector3 half_extents = Vector3::Zero();  ///< m
 };
-/// All points with y <= 0 in the body frame: the outward normal is the body's +y.
-struct HalfSpace {};
+/// All points x of the body frame with normal_B . x <= 0. The normal is kept as it was given and
+/// not as a rotation of +y, which no unit quaternion of doubles does exactly: along an axis it
+/// stays so.
+struct HalfSpace {
+  Vector3 normal_B = Vector3::UnitY();  ///< outward, unit, body frame
+};
 
 /// What a body collides as: a closed set, visited once per query, outside every loop.
 using Shape = std::variant<Sphere, Box, HalfSpace>;
@@ -31,8 +35,8 @@ using Shape = std::variant<Sphere, Box, HalfSpace>;
 [[nodiscard]] Vector3 solid_inertia(const Shape& shape, double mass);
 /// The box of a shape along the body's axes (thesis, 3.3). A half-space has none: throws.
 [[nodiscard]] Box bounding_box(const Shape& shape);
-/// The outward normal of a half-space in the world: its body +y axis.
-[[nodiscard]] Vector3 half_space_normal(const Pose& pose);
+/// The outward normal of a half-space in the world; `normal_B` itself where the pose is not turned.
+[[nodiscard]] Vector3 half_space_normal(const HalfSpace& half_space, const Pose& pose);
 
 }  // namespace core
 }  // namespace kairos

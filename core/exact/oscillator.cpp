@@ -96,7 +96,7 @@ std::unique_ptr<const ExactMotion> solve(const Scene& scene) {
     need(sphere != nullptr && is_plane(other), scene, "a sphere and a half-space at rest");
     need(ball.restitution * other.restitution == 1.0, scene, "restitution 1");
     const Pose& plane = other.initial.pose;
-    const Vector3 normal = half_space_normal(plane);
+    const Vector3 normal = half_space_normal(std::get<HalfSpace>(other.shape), plane);
     wall = {normal,
             static_cast<long double>(normal.dot(plane.position - equilibrium)) + sphere->radius};
   }

@@ -35,7 +35,8 @@ inline bool is_plane(const Body& body) {
 }
 /// One with its normal upwards.
 inline bool is_floor(const Body& body) {
-  return is_plane(body) && half_space_normal(body.initial.pose) == Vector3::UnitY();
+  return is_plane(body) &&
+         half_space_normal(std::get<HalfSpace>(body.shape), body.initial.pose) == Vector3::UnitY();
 }
 
 /// Acceleration of gravity on a body, m/s^2.

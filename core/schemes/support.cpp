@@ -83,8 +83,8 @@ std::optional<Support> find_support(const Model& model, BodyIndex ball, const Ve
     return std::nullopt;
   }
   const Pose pose = surface_motion.pose(s);
-  if (std::holds_alternative<HalfSpace>(model.shape(surface))) {
-    return Support{surface, half_space_normal(pose)};
+  if (const auto* half_space = std::get_if<HalfSpace>(&model.shape(surface))) {
+    return Support{surface, half_space_normal(*half_space, pose)};
   }
   const auto* box = std::get_if<Box>(&model.shape(surface));
   const int axis = box != nullptr ? face_axis(pose.orientation, normal) : -1;

@@ -79,8 +79,8 @@ inline Real separation(const MovingShape& a, Real s_a, const MovingShape& b, Rea
     return d.norm() - sphere_a->radius - sphere_b->radius - errors;
   }
   const Mat R_b = orientation(b.motion, s_b);
-  if (std::holds_alternative<HalfSpace>(b.shape)) {
-    const Vec n = R_b.col(1);
+  if (const auto* half_space = std::get_if<HalfSpace>(&b.shape)) {
+    const Vec n = R_b * half_space->normal_B.cast<Real>();
     if (sphere_a != nullptr) {
       return -n.dot(d) - sphere_a->radius - errors;
     }

@@ -23,8 +23,9 @@ void CrossingWatch::add(const Model& model, BodyIndex body, BodyIndex solid, dou
     box->half_extents.minCoeff(&gate.axis);
     gate.clear = box->half_extents[gate.axis] + bounding_radius(model.shape(body));
     gate.face = box->half_extents.array() + widening;
-  } else if (std::holds_alternative<HalfSpace>(model.shape(solid))) {
+  } else if (const auto* half_space = std::get_if<HalfSpace>(&model.shape(solid))) {
     gate.half_space = true;
+    gate.normal_B = half_space->normal_B;
     gate.clear = bounding_radius(model.shape(body));
   } else {
     return;  // a sphere has no other side
@@ -61,7 +62,8 @@ void CrossingWatch::frame(const Frame& frame) {
       gate.side = 0;  // a hand may put it anywhere
       continue;
     }
-    look(gate, frame.bodies[gate.solid].pose.to_body(frame.bodies[gate.body].pose.position));
+    const Vector3 at = frame.bodies[gate.solid].pose.to_body(frame.bodies[gate.body].pose.position);
+    look(gate, gate.half_space ? Vector3(0.0, gate.normal_B.dot(at), 0.0) : at);
   }
 }
 

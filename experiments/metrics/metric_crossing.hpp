@@ -34,11 +34,12 @@ class CrossingWatch {
     BodyIndex solid = 0;
     int axis = 1;  ///< of the solid's frame
     bool half_space = false;
-    double clear = 0.0;              ///< from here on along the axis it is clear, m
-    Vector3 face = Vector3::Zero();  ///< half-extents of the face, widened, m
-    Vector3 last = Vector3::Zero();  ///< centre in the solid's frame, last frame
-    bool within_face = false;        ///< where the centre last changed sides
-    int side = 0;                    ///< on which the body was last clear: -1, 1; 0: nowhere yet
+    Vector3 normal_B = Vector3::Zero();  ///< of a half-space, seen as along its y
+    double clear = 0.0;                  ///< from here on along the axis it is clear, m
+    Vector3 face = Vector3::Zero();      ///< half-extents of the face, widened, m
+    Vector3 last = Vector3::Zero();      ///< centre in the solid's frame, last frame
+    bool within_face = false;            ///< where the centre last changed sides
+    int side = 0;  ///< on which the body was last clear: -1, 1; 0: nowhere yet
     std::int64_t crossings = 0;
   };
   void add(const Model& model, BodyIndex body, BodyIndex solid, double widening);

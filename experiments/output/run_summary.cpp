@@ -56,7 +56,11 @@ void add_bodies(JsonWriter& json, const Model& model) {
     json.open(body.name);
     json.text("entity", body.entity->kind());
     json.text("shape", shape_name(body.shape));
-    if (!std::holds_alternative<HalfSpace>(body.shape)) {
+    if (const auto* half_space = std::get_if<HalfSpace>(&body.shape)) {
+      json.number("nx", half_space->normal_B.x());
+      json.number("ny", half_space->normal_B.y());
+      json.number("nz", half_space->normal_B.z());
+    } else {
       const Vector3 h = bounding_box(body.shape).half_extents;
       json.number("hx", h.x());
       json.number("hy", h.y());

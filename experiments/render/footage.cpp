@@ -143,6 +143,22 @@ class Summary {
     return *x;
   }
 
+  [[nodiscard]] HalfSpace half_space(const Fields& body) const {
+    Vector3 normal;
+    for (int k = 0; k < 3; ++k) {
+      const std::string key = std::string("n") + "xyz"[k];
+      const auto x = parse_number(field(body, key));
+      if (!x) {
+        fail(body, key, fmt::format("is {}; allowed: a number", field(body, key)));
+      }
+      normal[k] = *x;
+    }
+    if (!(std::abs(normal.norm() - 1.0) < 1e-6)) {  // printed digits
+      fail(body, "nx", "is not of a unit normal");
+    }
+    return {normal};
+  }
+
   [[nodiscard]] Actor actor(const Fields& body) const {
     Actor actor;
     actor.name = body.name;
@@ -153,7 +169,7 @@ class Summary {
     } else if (shape == "box") {
       actor.shape = Box{{extent(body, "hx"), extent(body, "hy"), extent(body, "hz")}};
     } else if (shape == "half-space") {
-      actor.shape = HalfSpace{};
+      actor.shape = half_space(body);
     } else {
       fail(body, "shape", fmt::format("is \"{}\"; allowed: sphere, box, half-space", shape));
     }

@@ -151,11 +151,14 @@ class Painter {
   std::string body(std::size_t i, const Colour& colour) const {
     const Actor& actor = footage_.actors[i];
     const Pose& pose = picture_.poses[i];
-    if (std::holds_alternative<HalfSpace>(actor.shape)) {
+    if (const auto* half_space = std::get_if<HalfSpace>(&actor.shape)) {
+      // The pattern lies in the plane: y is turned to the normal.
+      const Quaternion up(Quaternion::FromTwoVectors(Vector3::UnitY(), half_space->normal_B));
+      const Pose plane{pose.position, pose.orientation * up};
       return fmt::format(
           "plane {{ y, 0 pigment {{ checker color rgb 0.82 color rgb 0.74 scale "
           "{:.9g} }} {} }}\n",
-          25.0 * thickness_, matrix(pose));
+          25.0 * thickness_, matrix(plane));
     }
     double transmit = actor.is_free ? 0.0 : 0.25;
     if (actor.is_field) {

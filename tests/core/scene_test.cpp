@@ -11,6 +11,9 @@
 #include "tests/catch.hpp"
 #include "tests/locations.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <filesystem>
 
 using namespace kairos;
@@ -89,15 +92,26 @@ TEST_CASE("scene: a quaternion of seven printed digits is normalised exactly", "
   CHECK(std::abs(scene.bodies[0].initial.pose.orientation.norm() - 1.0) < 4e-16);
 }
 
-TEST_CASE("scene: the normal of a half-space is its orientation", "[scene]") {
-  for (const std::string normal : {"[1, 0, 0]", "[0, -1, 0]", "[0, 1, 0]", "[3, 4, 0]"}) {
+TEST_CASE("scene: the normal of a half-space is the one given, to the last bit", "[scene]") {
+  const double r = 1.0 / std::sqrt(3.0);
+  for (const auto& [normal, exact] : std::vector<std::pair<std::string, Vector3>>{
+           {"[1, 0, 0]", {1, 0, 0}},
+           {"[-1, 0, 0]", {-1, 0, 0}},
+           {"[0, -1, 0]", {0, -1, 0}},
+           {"[0, 2, 0]", {0, 1, 0}},
+           {"[0, 0, 1]", {0, 0, 1}},
+           {"[0, 0, -1e-3]", {0, 0, -1}},
+           {"[0.6, 0.8, 0]", {0.6, 0.8, 0}},
+           {"[0.48, -0.6, 0.64]", {0.48, -0.6, 0.64}},
+           {fmt::format("[{0}, {0}, {0}]", r), {r, r, r}}}) {
     const Scene scene = parse_scene(
         "[[body]]\nname = \"b\"\nentity = \"wall\"\nshape = \"half-space\"\nnormal = " + normal,
         "");
     const Body& body = scene.bodies[0];
-    const Vector3 up = half_space_normal(body.initial.pose);
+    const Vector3 up = half_space_normal(std::get<HalfSpace>(body.shape), body.initial.pose);
     INFO(normal);
-    CHECK((body.normal(body.initial.pose) - up).norm() < 1e-15);
+    CHECK(up == exact);
+    CHECK(body.normal(body.initial.pose) == exact);
     CHECK(std::abs(up.norm() - 1.0) < 1e-15);
   }
 }

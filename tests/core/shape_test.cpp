@@ -37,10 +37,16 @@ TEST_CASE("inertia of homogeneous solids", "[core][shape]") {
   CHECK(solid_inertia(HalfSpace{}, -1.0) == Vector3::Zero());
 }
 
-TEST_CASE("the normal of a half-space is its +y", "[core][shape]") {
-  CHECK(half_space_normal({}) == Vector3::UnitY());
+TEST_CASE("the normal of a half-space is its +y, or what was given, to the last bit",
+          "[core][shape]") {
+  CHECK(half_space_normal(HalfSpace{}, {}) == Vector3::UnitY());
   const Pose tilted{Vector3::Zero(), rotate({0, 0, 0.5}, Quaternion::Identity())};
-  CHECK((half_space_normal(tilted) - Vector3(-std::sin(0.5), std::cos(0.5), 0)).norm() < 1e-15);
+  CHECK(
+      (half_space_normal(HalfSpace{}, tilted) - Vector3(-std::sin(0.5), std::cos(0.5), 0)).norm() <
+      1e-15);
+  for (const Vector3& n : {Vector3(1, 0, 0), Vector3(0, 0, -1), Vector3(0.6, 0.8, 0)}) {
+    CHECK(half_space_normal(HalfSpace{n}, {{1, 2, 3}, Quaternion::Identity()}) == n);
+  }
 }
 
 TEST_CASE("statuses have names", "[core][time-of-impact]") {
