@@ -1,0 +1,34 @@
+#pragma once
+
+#include "tests/judge/contact.hpp"
+
+#include <span>
+#include <string_view>
+
+namespace kairos::judge {
+
+/// One class of hard queries.
+struct Family {
+  std::string_view name;
+  std::string_view what;
+  Query (*make)(Random& random);
+};
+
+/// In touch at the start, or close to it: families_touch.cpp.
+[[nodiscard]] std::span<const Family> touching_families();
+/// Half-spaces and balls: families_plane.cpp.
+[[nodiscard]] std::span<const Family> plane_families();
+/// Grazes, several roots, edges almost parallel, spins: families_graze.cpp.
+[[nodiscard]] std::span<const Family> graze_families();
+/// Far away, for long, of extreme size: families_scale.cpp.
+[[nodiscard]] std::span<const Family> scale_families();
+/// Lengths whose squares leave the range of a double: families_scale.cpp.
+[[nodiscard]] std::span<const Family> extreme_families();
+/// A query of another class, seen another way: families_changed.cpp.
+[[nodiscard]] std::span<const Family> changed_families();
+
+/// Draws a query of any class whose queries stand on their own (all but the extreme and the changed
+/// ones).
+[[nodiscard]] Query any_query(Random& random);
+
+}  // namespace kairos::judge
