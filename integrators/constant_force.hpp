@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/stepper.hpp"
-#include "integrators/double_double.hpp"
+#include "core/double_double.hpp"
 
 namespace kairos::integrators {
 

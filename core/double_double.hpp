@@ -2,7 +2,8 @@
 
 #include <cmath>
 
-namespace kairos::integrators {
+namespace kairos {
+inline namespace core {
 
 /// A number as the unevaluated sum of two doubles: about 106 bits [Dekker1971], [Hida2001].
 /// Valid while |values| stay below 2^996, where splitting would overflow.
@@ -72,4 +73,5 @@ inline DoubleDouble operator/(const DoubleDouble& a, const DoubleDouble& b) {
   return fast_two_sum(first, second) + DoubleDouble(third);
 }
 
-}  // namespace kairos::integrators
+}  // namespace core
+}  // namespace kairos
