@@ -77,7 +77,7 @@ struct Variations {
                                     const Dyadic& upper);
 
 /// The sum, over the distinct roots r of p between two numbers that are no roots of p, of the sign
-/// of q(r): the Tarski query, by a signed sequence of subresultants [Basu2006, ch. 2.2, 8.3]. With
+/// of q(r): the Tarski query, by a signed sequence of subresultants [Basu2006, ch. 2.2]. With
 /// one root it is the sign there, and 0 exactly if the two polynomials share it.
 [[nodiscard]] int sum_of_signs(const ExactPolynomial& p, const ExactPolynomial& q,
                                const Dyadic& lower, const Dyadic& upper);

@@ -1,5 +1,5 @@
 // Stage 4 with a separation: pairs of features (points, a point and an edge, the point and the face
-// or the two lines), each with the polynomial that says how far it is; equations (7) to (9).
+// or the two lines), each with the polynomial that says how far it is; equation (13).
 #include "ccd/linear/exact_motion.hpp"
 #include "ccd/linear/exact_root.hpp"
 

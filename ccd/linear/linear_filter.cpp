@@ -105,6 +105,7 @@ void LinearFilter<Real>::find_coefficients() {
   f_[1] = dot(x_.end, n_0) + dot(x_.start, n_1);
   f_[2] = dot(x_.start, n_2) + dot(x_.end, n_1);
   f_[3] = dot(x_.end, n_2);
+  // Equation (9).
   error_ = 224.0 * roundoff_of<Real> * size_[0] * size_[1] * size_[2];
 }
 
@@ -163,7 +164,7 @@ Real LinearFilter<Real>::blossom(const Real& a, const Real& b, const Real& c) co
   return f_[0] * (r * (s * t)) + f_[3] * (a * (b * c)) + (f_[1] * one + f_[2] * two) * third<Real>;
 }
 
-// Equation (12): the derivative has no root, as its discriminant is negative, errors included.
+// Equation (10): the derivative has no root, as its discriminant is negative, errors included.
 template <typename Real>
 bool LinearFilter<Real>::is_monotone() const {
   const double error = 6.0 * error_;
@@ -247,6 +248,9 @@ bool LinearFilter<Real>::bracket_root(const Real& near, const Real& begin, const
       root.upper = end;
     }
     root.before = before;
+    if (!(rounded(root.upper - root.lower) > 0.0)) {
+      return false;  // Newton's method has left the bracket
+    }
     if (proven_sign(value(root.lower)) == before && proven_sign(value(root.upper)) == -before) {
       return true;
     }
@@ -254,7 +258,7 @@ bool LinearFilter<Real>::bracket_root(const Real& near, const Real& begin, const
   return false;
 }
 
-// Equations (3), (4) and (12).
+// Equations (3), (4) and (11).
 template <typename Real>
 FilterVerdict LinearFilter<Real>::inside(const RootBracket<Real>& root) const {
   const Real t = root.lower;

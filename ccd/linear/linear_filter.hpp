@@ -18,7 +18,7 @@ struct RootBracket {
 };
 
 /// The volume of the four points, equation (1), by its scaled Bernstein coefficients (2), computed
-/// in `Real`, double or `DoubleDouble`; with the bounds (10) and (11) on what rounding did.
+/// in `Real`, double or `DoubleDouble`; with the bounds (9) and (11) on what rounding did.
 template <typename Real>
 class LinearFilter {
  public:
@@ -57,7 +57,7 @@ class LinearFilter {
   Moving x_, y_, z_;
   std::array<double, 3> size_{};  ///< m_k: the largest magnitude of any component k
   std::array<Real, 4> f_;         ///< F_0, 3 f_1, 3 f_2, F_3
-  double error_ = 0.0;            ///< equation (10)
+  double error_ = 0.0;            ///< E, equation (9)
   bool in_range_ = false;
 };
 
