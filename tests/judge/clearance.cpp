@@ -1,16 +1,13 @@
 #include "tests/judge/clearance.hpp"
 
+#include "tests/judge/turning.hpp"
+
 #include <algorithm>
 #include <array>
 #include <limits>
 
 namespace kairos::judge {
 namespace {
-
-Long travelled(const Body& body, Long s) {
-  return Long(body.position.stableNorm()) + Long(body.velocity.stableNorm()) * s +
-         Long(body.acceleration.stableNorm()) * s * s / 2;
-}
 
 Long error_radii(const Query& q) { return Long(q.a.error_radius) + Long(q.b.error_radius); }
 
@@ -108,7 +105,8 @@ Long revolved_reach(const Body& body, const Axes<Long>& axes, Vector<Long> n) {
 }
 
 /// `w_n`: spin of the normal, 0 if it stands still.
-Reach reach_of(const Body& body, const Axes<Long>& axes, Vector<Long> n, Vector<Long> w_n) {
+Reach reach_of(const Body& body, const Axes<Long>& axes, const Turning& turning, Vector<Long> n,
+               Vector<Long> w_n) {
   Reach reach;
   if (body.kind == Kind::sphere) {
     reach.constant = body.half_extents.x();
@@ -117,33 +115,48 @@ Reach reach_of(const Body& body, const Axes<Long>& axes, Vector<Long> n, Vector<
   if (body.kind != Kind::box) {
     return reach;
   }
-  const Vector<Long> w(body.spin);
-  const Long rate = norm(w);
-  const Long rate_n = norm(w_n);
-  const bool together = norm(w - w_n) == 0;
-  reach.turning = !together;
+  const Vector<Long> w = turning.w;
+  const Long swing = norm(cross(w_n, n));
+  reach.turning = !turning.steady || norm(w - w_n) > 0;
   for (int k = 0; k < 3; ++k) {
     const auto i = static_cast<std::size_t>(k);
     reach.half[i] = body.half_extents[k];
     reach.value[i] = dot(n, axes[k]);
-    if (together) {
+    if (!reach.turning) {
       continue;
     }
     reach.slope[i] = dot(n, cross(w - w_n, axes[k]));
-    const Long turn_u = norm(cross(w, axes[k]));
-    const Long turn_n = norm(cross(w, n));
-    reach.bend[i] = turn_n * turn_u;
-    if (rate_n > 0) {
-      const Long swing = norm(cross(w_n, n));
-      reach.bend[i] = swing * rate_n + 2 * swing * turn_u + rate * turn_u;
-    }
+    // Of steady turning, |w x u| and |w_n x n| are constant.
+    const Long turn_u = turning.steady ? norm(cross(w, axes[k])) : turning.rate;
+    const Long turn_n = swing > 0 || !turning.steady ? turning.rate : norm(cross(w, n));
+    reach.bend[i] = swing * norm(w_n) + 2 * swing * turn_u + turn_n * turn_u + turning.change;
   }
-  reach.widest = rate > 0 ? revolved_reach(body, axes, n) : reach.tangent(0);
+  if (!turning.steady) {
+    reach.widest = Long(body.reach()) * (1 + 1e-15L);
+  } else {
+    reach.widest = turning.rate > 0 ? revolved_reach(body, axes, n) : reach.tangent(0);
+  }
   return reach;
 }
 
+/// How both bodies go on from an instant.
+struct Flight {
+  Turning a, b;
+  Vector<Long> velocity;      ///< of b less that of a
+  Vector<Long> acceleration;  ///< likewise, the constant part
+  Long change = 0;            ///< bound of the rest of it
+};
+
+Flight flight_from(const Query& q, Long t) {
+  const Travel a = travel_of(q.a, t, q.duration);
+  const Travel b = travel_of(q.b, t, q.duration);
+  return {turning_of(q.a, t, q.duration), turning_of(q.b, t, q.duration), b.velocity - a.velocity,
+          b.acceleration - a.acceleration, a.change + b.change};
+}
+
 /// The velocity of n that keeps it across the edges which it is across of, of bodies that turn.
-Vector<Long> following(const Query& q, const Placed<Long>& at, Vector<Long> n) {
+Vector<Long> following(const Query& q, const Placed<Long>& at, const Flight& flight,
+                       Vector<Long> n) {
   Vector<Long> first;
   Vector<Long> velocity;
   int found = 0;
@@ -158,7 +171,8 @@ Vector<Long> following(const Query& q, const Placed<Long>& at, Vector<Long> n) {
         continue;
       }
       Vector<Long> u = axes[k] - n * dot(n, axes[k]);
-      const Long wanted = -dot(n, cross(Vector<Long>(body.spin), axes[k])) - dot(velocity, axes[k]);
+      const Long wanted =
+          -dot(n, cross((of_a ? flight.a : flight.b).w, axes[k])) - dot(velocity, axes[k]);
       if (found == 1) {
         u = u - first * dot(first, u);
       }
@@ -182,7 +196,8 @@ struct Spins {
   void add(Vector<Long> w) { spin[count++] = w; }
 };
 
-Spins spins_of_normal(const Query& q, const Placed<Long>& at, Vector<Long> n) {
+Spins spins_of_normal(const Query& q, const Placed<Long>& at, const Flight& flight,
+                      Vector<Long> n) {
   Spins spins;
   for (const Body* body : {&q.a, &q.b}) {
     if (body->kind == Kind::half_space) {
@@ -191,42 +206,39 @@ Spins spins_of_normal(const Query& q, const Placed<Long>& at, Vector<Long> n) {
     }
   }
   spins.add({});
-  const Vector<Long> velocity = following(q, at, n);
+  const Vector<Long> velocity = following(q, at, flight, n);
   if (norm(velocity) > 0) {
     spins.add(cross(n, velocity));
   }
-  for (const Body* body : {&q.a, &q.b}) {
-    if (body->kind == Kind::box && !body->spin.isZero(0.0)) {
-      spins.add(Vector<Long>(body->spin));
-    }
+  if (q.a.kind == Kind::box && flight.a.rate > 0) {
+    spins.add(flight.a.w);
+  }
+  if (q.b.kind == Kind::box && flight.b.rate > 0) {
+    spins.add(flight.b.w);
   }
   return spins;
 }
 
-Bound bound_along(const Query& q, const Placed<Long>& at, Vector<Long> n, Vector<Long> w_n,
-                  Long t) {
-  const Vector<Long> acceleration = Vector<Long>(q.b.acceleration) - Vector<Long>(q.a.acceleration);
-  const Vector<Long> speed =
-      Vector<Long>(q.b.velocity) + Vector<Long>(q.b.acceleration) * (q.b.age + t) -
-      Vector<Long>(q.a.velocity) - Vector<Long>(q.a.acceleration) * (q.a.age + t);
+Bound bound_along(const Query& q, const Placed<Long>& at, const Flight& flight, Vector<Long> n,
+                  Vector<Long> w_n) {
   Bound bound;
   bound.value = dot(n, at.offset) - error_radii(q);
-  bound.slope = dot(n, speed) + dot(cross(w_n, n), at.offset);
-  bound.pull = dot(n, acceleration);
-  bound.a = reach_of(q.a, at.a, n, w_n);
-  bound.b = reach_of(q.b, at.b, n, w_n);
+  bound.slope = dot(n, flight.velocity) + dot(cross(w_n, n), at.offset);
+  bound.pull = dot(n, flight.acceleration) - flight.change;
+  bound.a = reach_of(q.a, at.a, flight.a, n, w_n);
+  bound.b = reach_of(q.b, at.b, flight.b, n, w_n);
   bound.rate = norm(w_n);
   bound.n_turns = bound.rate > 0;
   bound.across = norm(cross(w_n, n));
   bound.arm = norm(cross(w_n, at.offset));
-  bound.speed = norm(speed);
-  bound.acceleration = norm(acceleration);
+  bound.speed = norm(flight.velocity);
+  bound.acceleration = norm(flight.acceleration) + flight.change;
   return bound;
 }
 
 /// The bodies as balls, along the line of their centres.
-Bound bound_of_balls(const Query& q, const Placed<Long>& at, Long t) {
-  Bound bound = bound_along(q, at, at.offset * (1 / norm(at.offset)), {}, t);
+Bound bound_of_balls(const Query& q, const Placed<Long>& at, const Flight& flight) {
+  Bound bound = bound_along(q, at, flight, at.offset * (1 / norm(at.offset)), {});
   bound.a = {};
   bound.b = {};
   bound.a.constant = bound.a.widest = Long(q.a.reach()) * (1 + 1e-15L);
@@ -247,13 +259,14 @@ struct Bounds {
 
 Bounds bounds_from(const Query& q, const Placed<Long>& at, Vector<Long> n, Long t) {
   Bounds bounds;
-  const Spins spins = spins_of_normal(q, at, n);
+  const Flight flight = flight_from(q, t);
+  const Spins spins = spins_of_normal(q, at, flight, n);
   for (std::size_t i = 0; i < spins.count; ++i) {
-    bounds.bound[bounds.count++] = bound_along(q, at, n, spins.spin[i], t);
+    bounds.bound[bounds.count++] = bound_along(q, at, flight, n, spins.spin[i]);
   }
   const bool balls = q.a.kind != Kind::half_space && q.b.kind != Kind::half_space;
   if (balls && norm(at.offset) > 0) {
-    bounds.bound[bounds.count++] = bound_of_balls(q, at, t);
+    bounds.bound[bounds.count++] = bound_of_balls(q, at, flight);
   }
   return bounds;
 }
@@ -266,11 +279,11 @@ double roundoff(const Query& q, double t) {
   Long places = travelled(q.a, s_a) + travelled(q.b, s_b);
   for (const Body* body : {&q.a, &q.b}) {
     if (body->kind == Kind::half_space) {
-      places *= 1 + Long(body->spin.stableNorm()) * (body->age + Long(t));
+      places *= 1 + angle_turned(*body, body->age + Long(t));
     }
   }
-  const Long reaches = q.a.reach() * (1 + Long(q.a.spin.stableNorm()) * s_a) +
-                       q.b.reach() * (1 + Long(q.b.spin.stableNorm()) * s_b);
+  const Long reaches =
+      q.a.reach() * (1 + angle_turned(q.a, s_a)) + q.b.reach() * (1 + angle_turned(q.b, s_b));
   const Long unit = 8 * std::numeric_limits<double>::epsilon();
   return static_cast<double>(unit * (places + reaches + error_radii(q)) + 1e-321L);
 }

@@ -24,11 +24,13 @@ struct Family {
 [[nodiscard]] std::span<const Family> scale_families();
 /// Lengths whose squares leave the range of a double: families_scale.cpp.
 [[nodiscard]] std::span<const Family> extreme_families();
+/// Motions as integrators make them: families_polynomial.cpp.
+[[nodiscard]] std::span<const Family> polynomial_families();
 /// A query of another class, seen another way: families_changed.cpp.
 [[nodiscard]] std::span<const Family> changed_families();
 
-/// Draws a query of any class whose queries stand on their own (all but the extreme and the changed
-/// ones).
+/// Draws a query of any class whose queries stand on their own, have lengths in the range of daily
+/// life, and motions that `kairos toi` can write.
 [[nodiscard]] Query any_query(Random& random);
 
 }  // namespace kairos::judge

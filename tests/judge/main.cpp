@@ -37,8 +37,9 @@ constexpr std::string_view usage =
 
 std::vector<Family> all_families() {
   std::vector<Family> all;
-  for (const auto& some : {touching_families(), plane_families(), graze_families(),
-                           scale_families(), extreme_families(), changed_families()}) {
+  for (const auto& some :
+       {touching_families(), plane_families(), graze_families(), scale_families(),
+        extreme_families(), polynomial_families(), changed_families()}) {
     all.insert(all.end(), some.begin(), some.end());
   }
   return all;

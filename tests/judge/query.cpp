@@ -55,6 +55,12 @@ Motion Body::motion(Instant window_start, double duration) const {
   Motion motion = Motion::ballistic(window_start - age, duration + age, {position, orientation},
                                     {velocity, spin}, acceleration);
   motion.error_radius = error_radius;
+  if (polynomial) {
+    motion.position = course;
+    motion.velocity = course.differentiated();
+    motion.rotation = RotationKind::polynomial;
+    motion.quaternion = turn;
+  }
   return motion;
 }
 

@@ -8,8 +8,9 @@ namespace kairos::judge {
 
 enum class Kind { box, sphere, half_space };
 
-/// One body of a query: p(s) = p + v s + a s^2/2, q(s) = exp(w s/2) q; s = `age` + t, t from the
-/// start of the window.
+/// One body of a query: p(s) = p + v s + a s^2/2, q(s) = exp(w s/2) q; or, if `polynomial`,
+/// p(s) = `course`(s), q(s) = `turn`(s) / |`turn`(s)|. s = `age` + t, t from the start of the
+/// window.
 struct Body {
   Kind kind = Kind::box;
   Vector3 half_extents = Vector3::Ones();  ///< m; a sphere has its radius in x
@@ -19,8 +20,11 @@ struct Body {
   Vector3 acceleration = Vector3::Zero();  ///< m/s^2
   Vector3 spin = Vector3::Zero();          ///< angular velocity, world frame, rad/s
   Vector3 normal = Vector3::UnitY();  ///< of a half-space, outward, body frame, unit to rounding
-  double error_radius = 0.0;          ///< m
-  double age = 0.0;                   ///< how long its motion lasts when the window starts, s
+  bool polynomial = false;
+  Polynomial<3> course;       ///< m
+  Polynomial<4> turn;         ///< (w, x, y, z)
+  double error_radius = 0.0;  ///< m
+  double age = 0.0;           ///< how long its motion lasts when the window starts, s
 
   [[nodiscard]] Shape shape() const;
   [[nodiscard]] Motion motion(Instant window_start, double duration) const;

@@ -1,5 +1,7 @@
 #include "tests/judge/separation.hpp"
 
+#include <array>
+
 namespace kairos::judge {
 namespace {
 
@@ -17,9 +19,25 @@ Axes<S> axes_of(Vector<S> v, S w) {
             1 - two * (v.x * v.x + v.y * v.y)}}};
 }
 
+template <int Dim, typename S>
+std::array<S, Dim> horner(const Polynomial<Dim>& p, S s) {
+  std::array<S, Dim> sum{};
+  for (int k = p.degree(); k >= 0; --k) {
+    for (int i = 0; i < Dim; ++i) {
+      S& x = sum[static_cast<std::size_t>(i)];
+      x = x * s + S(p[k][i]);
+    }
+  }
+  return sum;
+}
+
 /// Axes of a body that turned for s seconds: exp(w s / 2) q.
 template <typename S>
 Axes<S> turned_axes(const Body& body, S s) {
+  if (body.polynomial) {
+    const std::array<S, 4> c = horner<4, S>(body.turn, s);
+    return axes_of(Vector<S>(c[1], c[2], c[3]), c[0]);
+  }
   const Quaternion& q = body.orientation;
   const Vector<S> v(S(q.x()), S(q.y()), S(q.z()));
   const S w = S(q.w());
@@ -36,6 +54,10 @@ Axes<S> turned_axes(const Body& body, S s) {
 
 template <typename S>
 Vector<S> place_of(const Body& body, S s) {
+  if (body.polynomial) {
+    const std::array<S, 3> c = horner<3, S>(body.course, s);
+    return {c[0], c[1], c[2]};
+  }
   return Vector<S>(body.position) + Vector<S>(body.velocity) * s +
          Vector<S>(body.acceleration) * (s * s / 2);
 }
