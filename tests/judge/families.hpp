@@ -12,6 +12,7 @@ struct Family {
   std::string_view name;
   std::string_view what;
   Query (*make)(Random& random);
+  bool parting = false;  ///< asks when they part, not when they meet
 };
 
 /// In touch at the start, or close to it: families_touch.cpp.
@@ -24,6 +25,8 @@ struct Family {
 [[nodiscard]] std::span<const Family> scale_families();
 /// Lengths whose squares leave the range of a double: families_scale.cpp.
 [[nodiscard]] std::span<const Family> extreme_families();
+/// Overlapping at the start: families_parting.cpp.
+[[nodiscard]] std::span<const Family> parting_families();
 /// Motions as integrators make them: families_polynomial.cpp.
 [[nodiscard]] std::span<const Family> polynomial_families();
 /// A query of another class, seen another way: families_changed.cpp.

@@ -2,6 +2,7 @@
 // by interval proof in extended and quadruple precision. See README.md.
 #include "ccd/certified.hpp"
 #include "tests/judge/families.hpp"
+#include "tests/judge/parting.hpp"
 #include "tests/judge/query_file.hpp"
 #include "tests/judge/self_check.hpp"
 #include "tests/judge/tally.hpp"
@@ -39,7 +40,7 @@ std::vector<Family> all_families() {
   std::vector<Family> all;
   for (const auto& some :
        {touching_families(), plane_families(), graze_families(), scale_families(),
-        extreme_families(), polynomial_families(), changed_families()}) {
+        extreme_families(), polynomial_families(), parting_families(), changed_families()}) {
     all.insert(all.end(), some.begin(), some.end());
   }
   return all;
@@ -62,11 +63,12 @@ class Session {
     }
   }
 
-  void take(const Query& query, Tally& tally) {
+  void take(const Query& query, bool parting, Tally& tally) {
     const double before = processor_time();
-    const TimeOfImpact answer = query.ask(*certified_);
+    const TimeOfImpact answer = parting ? ask_parting(query, *certified_) : query.ask(*certified_);
     const double seconds = processor_time() - before;
-    const Verdict verdict = judge(query, answer, *certified_);
+    const Verdict verdict =
+        parting ? judge_parting(query, answer) : judge(query, answer, *certified_);
     tally.add(answer, verdict, seconds);
     const bool noted = verdict.breaks_a_promise() || arguments_.index ||
                        (arguments_.told && !verdict.faults().empty());
@@ -96,7 +98,7 @@ void show(const Tally& tally, const std::string& name) {
 Tally judge_file(const Arguments& arguments, Session& session) {
   Tally tally;
   for (const Query& query : read_queries(arguments.in)) {
-    session.take(query, tally);
+    session.take(query, false, tally);
   }
   return tally;
 }
@@ -110,7 +112,7 @@ Tally judge_family(const Arguments& arguments, const Family& family, std::uint64
     Query query = family.make(random);
     query.id = fmt::format("{}-{}-{}", family.name, arguments.seed, i);
     query.family = family.name;
-    session.take(query, tally);
+    session.take(query, family.parting, tally);
   }
   return tally;
 }
