@@ -22,11 +22,11 @@ def draw(data, figures):
     methods = unique(row["method"] for row in series["spring"])
     energy = next(row["kinetic"] + row["potential"] for row in series["start"] if row["t"] == 0.0)
     figure, panel = plt.subplots(figsize=(8.6, 5.0))
-    for i, method in enumerate(methods):
+    for method in methods:
         rows = sorted((row for sweep in sweeps for row in pick(series[sweep], method=method)),
                       key=lambda row: row["t"])
         times, drift = envelope(rows, energy)
-        look = style.look(method, methods) | {"marker": "", "linestyle": style.DASHES[i % 8]}
+        look = style.look(method, methods) | {"markevery": 0.09}
         status = pick(runs, method=method)[0]["status"]
         look["label"] = method if status == "completed" else f"{method} (leaves the numbers)"
         panel.plot(times, drift, **look)

@@ -74,12 +74,11 @@ def all_integrators(data, figures):
     lines = {sweep: {method: root_mean_square([r for r in rows if r["method"] == method])
                      for method in methods} for sweep, rows in tables.items()}
     slopes = {method: [slope(lines[sweep][method]) for sweep, _ in ways] for method in methods}
-    looks = looks_by_order({method: found[-1] for method, found in slopes.items()})
     figure, panels = plt.subplots(1, 3, figsize=(13.2, 5.6), sharex=True, sharey=True)
     for panel, (sweep, title) in zip(panels, ways):
         for method in methods:
             line = lines[sweep][method]
-            panel.plot([p[0] for p in line], [p[1] for p in line], **looks[method])
+            panel.plot([p[0] for p in line], [p[1] for p in line], **style.look(method, methods) | {"linewidth": 1.2})
         finish(panel)
         panel.set_title(title)
     panels[0].set_ylim(1e-15, 1e2)
@@ -90,21 +89,9 @@ def all_integrators(data, figures):
     panels[2].legend(panels[2].get_lines(), names, loc="center left", bbox_to_anchor=(1.02, 0.5),
                      fontsize=9.5, title="slopes: not located,\nlinearly, on the dense output")
     figures.save(figure, "order_all",
-                 "The same for every integrator with a fixed step; a colour is an order on the "
-                 "dense output. The legend tells the slopes of the three panels; a dash: below "
+                 "The same for every integrator with a fixed step; a colour is an order of the "
+                 "method. The legend tells the slopes of the three panels; a dash: below "
                  "roundoff.")
-
-
-def looks_by_order(orders):
-    """A colour per order (slope, rounded), a marker and a dash per method of that order."""
-    colours = dict(zip((1, 2, 3, 4, 5, 6, 8), style.COLOURS))
-    groups = {}
-    for method, found in orders.items():
-        groups.setdefault(round(found) if found else None, []).append(method)
-    return {method: {"color": colours.get(order, style.COLOURS[-1]), "marker": style.MARKERS[i],
-                     "linestyle": style.DASHES[i], "markerfacecolor": "white", "linewidth": 1.2,
-                     "markeredgewidth": 1.1}
-            for order, group in groups.items() for i, method in enumerate(group)}
 
 
 def finish(panel):

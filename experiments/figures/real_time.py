@@ -16,8 +16,7 @@ def names(rows):
 
 
 def look_of(name, methods):
-    return style.look({"equal substeps": "equal_substeps", "thesis": "original"}.get(name, name),
-                      methods) | {"label": name}
+    return style.look(name, methods)
 
 
 def frames_against_bodies(figures, rows):

@@ -1,5 +1,5 @@
 """One look for all figures: legible in grey (line style and marker tell lines apart, not colour
-alone), units on axes, the same bytes each time."""
+alone), units on axes, the same bytes each time. Methods look as methods.py says."""
 
 import csv
 import os
@@ -9,15 +9,9 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen first)
 
-# Paul Tol's "bright" colours, ordered so that neighbours differ in lightness, too.
-COLOURS = ["#222255", "#EE6677", "#228833", "#AA3377", "#4477AA", "#CC9900", "#66CCEE", "#888888"]
-MARKERS = ["o", "s", "^", "D", "v", "P", "X", "*"]
-DASHES = ["-", "--", "-.", (0, (1, 1.2)), (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)), (0, (3, 1, 1, 1)),
-          (0, (2, 2))]
-PREDICTION = {"color": "black", "linestyle": (0, (1, 1)), "linewidth": 1.1, "zorder": 5}
+from methods import COLOURS, DASHES, MARKERS, look, scheme_of  # noqa: E402,F401  (figures ask style for all)
 
-# A method looks the same in every figure.
-ORDER = ["original", "geometric", "substepped", "equal_substeps", "bisected", "event-driven"]
+PREDICTION = {"color": "black", "linestyle": (0, (1, 1)), "linewidth": 1.1, "zorder": 5}
 
 
 def use():
@@ -32,30 +26,41 @@ def use():
     })
 
 
-def look(name, names=()):
-    """Line properties of a method: fixed for the schemes, what is left for anything else."""
-    taken = [ORDER.index(other) for other in names if other in ORDER]
-    free = [i for i in range(len(COLOURS)) if i not in taken]
-    others = [other for other in names if other not in ORDER]
-    if name in ORDER:
-        i = ORDER.index(name)
-    else:
-        i = free[others.index(name) % len(free)] if name in others and free else 0
-    return {"color": COLOURS[i], "marker": MARKERS[i], "linestyle": DASHES[i],
-            "markerfacecolor": "white", "markeredgewidth": 1.1, "label": name}
-
-
 def legend_below(figure, axes, columns=3):
     """One legend for all panels, below them."""
     seen = {}
     for axis in axes:
         for handle, label in zip(*axis.get_legend_handles_labels()):
             seen.setdefault(label, handle)
-    inches = 0.1 + 0.19 * -(-len(seen) // columns)  # of the legend; 3.6 does not make room for it
-    figure.legend(seen.values(), seen.keys(), loc="outside lower center"
+    legend_of(figure, list(seen.values()), columns, list(seen.keys()))
+
+
+def legend_of(figure, handles, columns=3, labels=None):
+    """A legend of these, below all panels."""
+    labels = labels or [handle.get_label() for handle in handles]
+    inches = 0.1 + 0.19 * -(-len(labels) // columns)  # of the legend; 3.6 does not make room for it
+    figure.legend(handles, labels, loc="outside lower center"
                   if matplotlib.__version_info__ >= (3, 7) else "lower center", ncol=columns,
                   **({} if matplotlib.__version_info__ >= (3, 7)
                      else {"bbox_to_anchor": (0.5, -inches / figure.get_figheight())}))
+
+
+def over_roundoff(figure, place, upper, lower, share=0.22):
+    """Two panels for one quantity on a logarithmic axis with nothing in the decades between: `upper`
+    and, below a break, what is at roundoff. Both are limits (low, high). Returns both panels."""
+    inner = place.subgridspec(2, 1, height_ratios=[1 - share, share], hspace=0.08)
+    top = figure.add_subplot(inner[0])
+    bottom = figure.add_subplot(inner[1], sharex=top)
+    for panel, limits in ((top, upper), (bottom, lower)):
+        panel.set_yscale("log")
+        panel.set_ylim(*limits)
+    top.spines["bottom"].set_visible(False)
+    top.tick_params(axis="x", which="both", bottom=False, labelbottom=False)
+    cut = {"marker": [(-1, -0.6), (1, 0.6)], "markersize": 7, "linestyle": "none", "color": "black",
+           "markeredgewidth": 1, "clip_on": False}
+    top.plot([0], [0], transform=top.transAxes, **cut)
+    bottom.plot([0], [1], transform=bottom.transAxes, **cut)
+    return top, bottom
 
 
 class Figures:

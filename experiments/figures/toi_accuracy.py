@@ -35,6 +35,7 @@ def draw(data, figures):
     panels[1].yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     panels[1].yaxis.set_major_formatter("{x:g}")
     panels[1].yaxis.set_minor_formatter(NullFormatter())
-    panels[1].set_title("What it costs (FCL does not tell)")
+    silent = [m for m in methods if not points(pick(rows, method=m), "tolerance", "evaluations")[0]]
+    panels[1].set_title("What it costs" + (f" ({', '.join(silent)} does not tell)" if silent else ""))
     style.legend_below(figure, panels[:1], columns=4)
     figures.save(figure, "toi_accuracy", data.entry("caption"))

@@ -61,7 +61,7 @@ def work(data, figures, name, label, cost, problems, caption):
         line[0].set_ylabel("error of position / m")
     for top, bottom, (family, methods) in zip(panels[0], panels[-1], families):
         bottom.set_xlabel(label)
-        handles = [top.plot([], [], **look(method, methods))[0] for method in methods]
+        handles = [top.plot([], [], **look(method))[0] for method in methods]
         top.legend(handles, methods, loc="lower left", bbox_to_anchor=(-0.02, 1.12), fontsize=9.5,
                    title=family, title_fontproperties={"weight": "bold", "size": 10.5},
                    ncol=2, columnspacing=0.8, handlelength=1.7, handletextpad=0.5, alignment="left")
@@ -102,13 +102,11 @@ def draw_family(panel, rows, families, methods, cost, others):
         if of_method and others and method not in methods:
             draw_method(panel, of_method, cost, {"color": "#dddddd", "linewidth": 0.9, "zorder": 1})
         elif of_method and not others and method in methods:
-            draw_method(panel, of_method, cost, look(method, methods))
+            draw_method(panel, of_method, cost, look(method))
 
 
-def look(method, methods):
-    i = methods.index(method)
-    return {"color": style.COLOURS[i], "marker": style.MARKERS[i], "linestyle": style.DASHES[i],
-            "markerfacecolor": "white", "markeredgewidth": 1.1, "linewidth": 1.3}
+def look(method):
+    return style.look(method) | {"linewidth": 1.3}
 
 
 def draw_method(panel, rows, cost, drawn):

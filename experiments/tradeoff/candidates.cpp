@@ -57,7 +57,7 @@ void frame_based(Collector& all) {
     all.add("substepped", "substepped", method("substepped", "velocity-verlet", "sat"), parts);
     RunChoice equal = method("substepped", "velocity-verlet", "sat");
     equal.equal_substeps = true;
-    all.add("substepped equal", "substepped", equal, parts);
+    all.add("equal substeps", "substepped", equal, parts);
     all.add("bisected bisection", "bisected", method("bisected", "velocity-verlet", "bisection"),
             parts);
     all.add("bisected certified", "bisected", method("bisected", "rk4", "certified"), parts);
