@@ -58,7 +58,7 @@ std::vector<RallyMethod> rally_methods() {
   for (const bool equal : {false, true}) {
     for (const double threshold : {0.055, 0.0275, 0.011}) {
       methods.push_back(
-          thesis_with(fmt::format("{}substepped, {} m", equal ? "equal " : "", threshold),
+          thesis_with(fmt::format("{}, {} m", equal ? "equal substeps" : "substepped", threshold),
                       "substepped", "sat"));
       methods.back().choice.threshold = threshold;
       methods.back().choice.equal_substeps = equal;
@@ -66,18 +66,35 @@ std::vector<RallyMethod> rally_methods() {
   }
   methods.push_back(thesis_with("bisected", "bisected", "bisection"));
   methods.push_back({.name = "event-driven", .choice = {}});
+  methods.push_back(thesis_with("original, boxes", "original", "sat"));
+  methods.back().boxes = true;
+  methods.push_back(thesis_with("substepped, 0.0275 m, boxes", "substepped", "sat"));
+  methods.back().choice.threshold = 0.0275;
+  methods.back().boxes = true;
   return methods;
 }
 
 Scene rally_scene(const RallyRecording& rally, const RallyMethod& method) {
-  Scene scene = read_scene(find_scene("table-tennis"),
-                           {{"body.bat.nudge", fmt::format("{}", method.nudge)},
-                            {"body.bat.nudge_prose", fmt::format("{}", method.nudge_prose)},
-                            {"body.bat.mass", fmt::format("{}", method.bat_mass)},
-                            {"duration", fmt::format("{}", rally.duration())}});
+  std::vector<Override> values{{"body.bat.nudge", fmt::format("{}", method.nudge)},
+                               {"body.bat.nudge_prose", fmt::format("{}", method.nudge_prose)},
+                               {"body.bat.mass", fmt::format("{}", method.bat_mass)},
+                               {"duration", fmt::format("{}", rally.duration())}};
+  if (method.boxes) {
+    constexpr double mass = 0.0027;  // kg, of the ball
+    values.insert(values.end(), {{"bounds", "\"obb\""},
+                                 {"gravity", "\"force\""},
+                                 {"body.ball.G", fmt::format("{}", 9.8 * mass)}});
+  }
+  Scene scene = read_scene(find_scene("table-tennis"), values);
   follow(scene, "bat", rally.bat);
   follow(scene, "hand", rally.hand);
   return scene;
+}
+
+Cluster RallyOutcome::passed() const {
+  const auto passes = std::count_if(strokes.begin(), strokes.end(),
+                                    [](const StrokeOutcome& stroke) { return stroke.passed(); });
+  return {passes, static_cast<std::int64_t>(strokes.size())};
 }
 
 RallyOutcome play(const RallyRecording& rally, const RallyMethod& method) {

@@ -130,7 +130,14 @@ std::string errata_section_html(const ReportEntry& entry) {
   out += paragraph("asks", entry.entry("asks"));
   out += paragraph("how", entry.entry("how"));
   out += paragraph("finding", entry.entry("finding"));
-  return out + errata_html(entry) + facts_html(entry) + "</section>\n";
+  out += errata_html(entry);
+  for (const auto& [table, heading] : {std::pair{"corrected", "First readings that runs refuted"},
+                                       {"contradictions", "Contradictions within the thesis"},
+                                       {"undecided", "Claims that no run here decides"}}) {
+    out += fmt::format("<h3>{}</h3>\n{}", heading,
+                       csv_table_html(fmt::format("{}/{}.csv", entry.folder, table)));
+  }
+  return out + facts_html(entry) + "</section>\n";
 }
 
 std::string versions_html(const ReportEntry& entry) {

@@ -11,9 +11,16 @@ namespace kairos::experiments::thesis {
 
 /// How a measured number is held against a predicted one.
 enum class Agreement {
-  equal,     ///< |measured - predicted| <= tolerance
-  at_most,   ///< measured <= predicted
-  at_least,  ///< measured >= predicted
+  equal,      ///< |measured - predicted| <= tolerance
+  at_most,    ///< measured <= predicted
+  more_than,  ///< measured > predicted
+};
+
+/// What a number is worth as evidence: could a run have said otherwise?
+enum class Evidence {
+  run,          ///< predicted before, in closed form; a run or the library's answer could refute it
+  arithmetic,   ///< counted or computed on both sides: no run could refute it
+  observation,  ///< no number was predicted; a run shows that the effect is there
 };
 
 /// One number that a prediction comes down to.
@@ -25,6 +32,7 @@ struct Check {
   Agreement agreement = Agreement::equal;
   double tolerance = 0.0;
   std::string_view tolerance_kind;  ///< what the tolerance stands for
+  Evidence evidence = Evidence::run;
 
   [[nodiscard]] bool confirmed() const;
 };
@@ -40,5 +48,33 @@ struct Erratum {
 };
 
 [[nodiscard]] std::span<const Erratum> errata();
+
+/// Two places of the thesis that say different things.
+struct Contradiction {
+  std::string_view section;
+  std::string_view says;
+  std::string_view other_section;
+  std::string_view other_says;
+  std::string_view run;      ///< which is run here
+  std::string_view measure;  ///< what the difference comes to; quotes values as `{name}`
+};
+[[nodiscard]] std::span<const Contradiction> contradictions();
+
+/// A claim of the thesis that no run here decides.
+struct Undecided {
+  std::string_view section;
+  std::string_view claim;
+  std::string_view why;    ///< it is not decided
+  std::string_view known;  ///< what runs do say about it; quotes values as `{name}`
+};
+[[nodiscard]] std::span<const Undecided> undecided();
+
+/// What we predicted at first, and a run refuted.
+struct Corrected {
+  std::string_view id;  ///< of the statement that it became part of
+  std::string_view at_first;
+  std::string_view measured;
+};
+[[nodiscard]] std::span<const Corrected> corrected();
 
 }  // namespace kairos::experiments::thesis

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace kairos::experiments::thesis {
 namespace {
@@ -84,13 +85,36 @@ RunChoice substep_choice(const std::string& scheme, bool equal_substeps) {
 
 double tunnelled_fraction(RunChoice choice, double speed, int n) {
   choice.frames = FixedFrames{frame};
-  choice.duration = 2.0 / speed + 4.0 * frame;
+  // A ball that is turned back in may take many frames to come out on the other side.
+  choice.duration = 2.0 / speed + 20.0 * frame;
   const double shift = Random(seed, static_cast<std::uint64_t>(speed)).uniform();
   double count = 0.0;
   for (int k = 0; k < n; ++k) {
     count += measured_run(bullet_at_phase(speed, (k + shift) / n), choice, "tunnelled").value;
   }
   return count / n;
+}
+
+double literal_passes(double speed, double threshold) {
+  const double move = speed * frame;
+  const double whole = std::floor(move / threshold + 1e-9);  // a rest of roundoff is none
+  const double rest = move - whole * threshold;
+  return std::fmod(whole, 2.0) == 1.0 ? (threshold - rest) / move : 0.0;
+}
+
+double corridor_left(double speed, int n) {
+  RunChoice choice = substep_choice("geometric");
+  choice.frames = FixedFrames{frame};
+  choice.duration = 1.0;
+  double out = 0.0;
+  for (int k = 0; k < n; ++k) {
+    const Scene scene = shipped(
+        "corridor",
+        {{"body.ball.velocity", fmt::format("[{}, 0, 0]", speed)},
+         {"body.ball.position", fmt::format("[{}, 0, 0]", 0.28 * (2.0 * (k + 0.5) / n - 1.0))}});
+    out += std::min(1.0, measured_run(scene, choice, "crossings").value);
+  }
+  return out / n;
 }
 
 }  // namespace kairos::experiments::thesis

@@ -29,5 +29,14 @@ inline constexpr double bullet_length = 0.06;  ///< m, of scene bullet: wall and
 /// Fraction of n stratified phases at which the bullet goes through the wall; exact within 1/n for
 /// any interval of phases.
 [[nodiscard]] double tunnelled_fraction(RunChoice choice, double speed, int n);
+/// The same in closed form, for fig. 15 taken literally with a threshold of half the bullet's
+/// length: a ball first seen inside after the last whole substep of a frame, deeper than the rest
+/// of that frame, is turned back in, and comes out behind the wall where whole substeps are odd in
+/// number.
+[[nodiscard]] double literal_passes(double speed, double threshold);
+
+/// Fraction of n starts between the two walls of the scene corridor from which a ball at this speed
+/// (m/s) gets out within a second, under the geometric approach.
+[[nodiscard]] double corridor_left(double speed, int n);
 
 }  // namespace kairos::experiments::thesis

@@ -134,7 +134,44 @@ TEST_CASE("rally: the nudge helps where a hit ball stays with the bat, and nowhe
   CHECK(light > frames("original"));
 }
 
-TEST_CASE("intervals: Wilson's for shares, standard errors for means", "[rally]") {
+TEST_CASE("rally: fig. 15 taken literally lets more strokes pass than the original", "[rally]") {
+  const std::vector<RallyMethod> methods = rally_methods();
+  std::int64_t more = 0;
+  for (std::uint64_t seed = 1999; seed < 2009; ++seed) {
+    const RallyRecording rally = make_rally({.seed = seed});
+    more += play(rally, method(methods, "substepped, 0.0275 m")).passed().count -
+            play(rally, method(methods, "original")).passed().count;
+    CHECK(play(rally, method(methods, "equal substeps, 0.0275 m")).passed().count == 0);
+  }
+  CHECK(more > 0);
+}
+
+TEST_CASE("rally: with the thesis' boxes and force the ball falls as before and is hit as a box",
+          "[rally]") {
+  const RallyRecording rally = make_rally({.seed = 1999, .strokes = 2});
+  const auto scene = [&rally](bool boxes) {
+    RallyMethod as{.name = "as"};
+    as.boxes = boxes;
+    return rally_scene(rally, as);
+  };
+  const Model spheres(scene(false));
+  const Model boxes(scene(true));
+  const std::size_t ball = spheres.size() - 1;
+  CHECK(std::holds_alternative<Sphere>(spheres.shape(ball)));
+  CHECK(std::holds_alternative<Box>(boxes.shape(ball)));
+  // In the air, served and not hit yet: the same fall, up to the roundoff of G m/m.
+  RunChoice choice;
+  choice.method = MethodChoice::thesis();
+  choice.duration = rally.strokes.front().hit - 0.1;
+  const auto falls = [&](const Model& model) {
+    Trajectory trajectory;
+    return simulate(model, choice, trajectory).state[ball].twist.linear.y();
+  };
+  CHECK(falls(spheres) < -0.2);
+  CHECK(std::abs(falls(boxes) / falls(spheres) - 1.0) <= 1e-12);
+}
+
+TEST_CASE("intervals: Wilson's for shares, Student's for means", "[rally]") {
   // Values of the formula, by hand.
   const Interval half = share_interval(5, 10);
   CHECK(half.estimate == 0.5);
@@ -144,8 +181,31 @@ TEST_CASE("intervals: Wilson's for shares, standard errors for means", "[rally]"
   CHECK(none.low == 0.0);
   CHECK(none.high == Approx(0.036993).epsilon(1e-4));
   CHECK(share_interval(100, 100).high == 1.0);
-  const Interval mean = mean_interval({1.0, 2.0, 3.0, 4.0});
-  CHECK(mean.estimate == 2.5);
-  CHECK(mean.high - mean.estimate == Approx(1.959964 * std::sqrt(5.0 / 3.0 / 4.0)).epsilon(1e-6));
+  // From tables of the distribution, to the digits that the expansion holds.
+  CHECK(student(4.0) == Approx(2.7764).epsilon(3e-3));
+  CHECK(student(19.0) == Approx(2.0930).epsilon(1e-4));
+  CHECK(student(1e9) == Approx(1.959964).epsilon(1e-6));
+  const Interval mean = mean_interval({1.0, 2.0, 3.0, 4.0, 5.0});
+  CHECK(mean.estimate == 3.0);
+  CHECK(mean.high - mean.estimate == Approx(2.7764 * std::sqrt(2.5 / 5.0)).epsilon(3e-3));
   CHECK(mean_interval({7.0}).low == 7.0);
+}
+
+TEST_CASE("intervals: strokes of a rally that go alike count as fewer", "[rally]") {
+  // All of a rally or nothing: as many independent draws as rallies.
+  const std::vector<Cluster> alike{{10, 10}, {0, 10}, {10, 10}, {0, 10}};
+  // 4/3 sum (c - p n)^2 / (n p (1 - p)) = 4/3 100/10.
+  CHECK(design_effect(alike) == Approx(40.0 / 3.0));
+  // Just as independent draws would have it, or more even: never narrower than they are.
+  const std::vector<Cluster> even{{5, 10}, {5, 10}, {5, 10}, {5, 10}};
+  CHECK(design_effect(even) == 1.0);
+  const Interval wide = share_interval(alike);
+  const Interval narrow = share_interval(even);
+  CHECK(wide.estimate == narrow.estimate);
+  CHECK(wide.low < narrow.low - 0.1);
+  CHECK(wide.high > narrow.high + 0.1);
+  // Where nothing was counted the effect is that of others.
+  const std::vector<Cluster> nothing{{0, 10}, {0, 10}, {0, 10}, {0, 10}};
+  CHECK(share_interval(nothing, 4.0).high > 2.0 * share_interval(nothing).high);
+  CHECK(share_interval(nothing, 4.0).low == 0.0);
 }
