@@ -84,12 +84,45 @@ Query fast_spin(Random& random) {
   const double duration = random.log_uniform(0.01, 10.0);
   const double turns = random.log_uniform(10.0, 1e6) / duration;
   Contact contact = any_contact(random);
-  Approach approach{.closing = random.log_uniform(1.0, 1e3), .sliding = random.uniform(0.0, 10.0)};
+  Approach approach{.closing = random.log_uniform(0.1, 1e3), .sliding = random.uniform(0.0, 10.0)};
   approach.spin_b = turns;
   approach.spin_a = random.below(2) == 0 || contact.query.a.kind == Kind::half_space
                         ? 0.0
                         : turns * random.uniform();
   return set_moving(random, contact, approach, random.uniform() * duration, duration);
+}
+
+/// A body that turns, up to 1e6 rad, and one beside all places where it can be, or just not.
+Query spin_beside(Random& random) {
+  Query q;
+  q.a = random_box(random);
+  const Vector3 axis =
+      random.below(2) == 0 ? Vector3(q.a.orientation * Vector3::UnitZ()) : random.direction();
+  q.duration = random.log_uniform(0.1, 1e3);
+  q.a.spin = axis * random.log_uniform(1.0, 1e6) / q.duration;
+  const Vector3 out = random.below(2) == 0 ? across(random, axis) : random.direction();
+  // How far the corners reach along `out` at any angle.
+  double reach = 0.0;
+  for (int signs = 0; signs < 8; ++signs) {
+    Vector3 corner = q.a.half_extents;
+    for (int i = 0; i < 3; ++i) {
+      corner[i] *= (signs >> i & 1) != 0 ? 1.0 : -1.0;
+    }
+    corner = q.a.orientation * corner;
+    reach = std::max(reach, axis.dot(corner) * axis.dot(out) +
+                                axis.cross(corner).norm() * axis.cross(out).norm());
+  }
+  q.b = random.below(2) == 0 ? random_sphere(random) : random_box(random);
+  double extent = q.b.half_extents.x();
+  if (q.b.kind == Kind::box) {
+    const Vector3 out_B = q.b.orientation.conjugate() * out;
+    extent = q.b.half_extents.dot(out_B.cwiseAbs());
+  }
+  q.b.position = out * (reach + extent + signed_log(random, 1e-15, 1e-1));
+  if (random.below(3) == 0) {
+    q.b.velocity = across(random, out) * random.log_uniform(1e-3, 1.0) / q.duration;
+  }
+  return q;
 }
 
 /// Centres at rest; what touches was turned there.
@@ -207,6 +240,7 @@ constexpr Family families[] = {
     {"several-roots", "corners that pass close by before one touches", several_roots},
     {"turn-around", "an acceleration turns the motion at the contact", turn_around},
     {"fast-spin", "up to 1e6 rad in the window", fast_spin},
+    {"spin-beside", "beside all places where a turning body can be, or just not", spin_beside},
     {"pure-spin", "centres at rest", pure_spin},
     {"screw", "spins about the line of motion", screw},
     {"ties", "cubes by corners, edges and faces at once", ties},
