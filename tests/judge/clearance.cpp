@@ -248,7 +248,7 @@ Bound bound_of_balls(const Query& q, const Placed<Long>& at, const Flight& fligh
 
 /// The bounds that may hold from one instant on.
 struct Bounds {
-  std::array<Bound, 5> bound;
+  std::array<Bound, 13> bound;  // four ways to turn of three normals, and the balls
   std::size_t count = 0;
 
   [[nodiscard]] bool above(Long level, Long x) const {
@@ -257,12 +257,48 @@ struct Bounds {
   }
 };
 
-Bounds bounds_from(const Query& q, const Placed<Long>& at, Vector<Long> n, Long t) {
-  Bounds bounds;
-  const Flight flight = flight_from(q, t);
+/// n put across the edges that it is almost across of: a direction between nearest points that are
+/// 1e-9 m apart is no better than 1e-10.
+Vector<Long> straightened(const Query& q, const Placed<Long>& at, Vector<Long> n) {
+  Vector<Long> first;
+  int found = 0;
+  for (const bool of_a : {true, false}) {
+    if ((of_a ? q.a : q.b).kind != Kind::box) {
+      continue;
+    }
+    for (int k = 0; k < 3 && found < 2; ++k) {
+      Vector<Long> u = (of_a ? at.a : at.b)[k];
+      if (magnitude(dot(n, u)) > 1e-6L) {
+        continue;
+      }
+      u = u - first * dot(first, u);
+      const Long square = dot(u, u);
+      if (square < 1e-6L) {
+        continue;
+      }
+      n = n - u * (dot(n, u) / square);
+      first = u * (1 / root(square));
+      ++found;
+    }
+  }
+  return n * (1 / norm(n));
+}
+
+void add_bounds(const Query& q, const Placed<Long>& at, const Flight& flight, Vector<Long> n,
+                Bounds& bounds) {
   const Spins spins = spins_of_normal(q, at, flight, n);
   for (std::size_t i = 0; i < spins.count; ++i) {
     bounds.bound[bounds.count++] = bound_along(q, at, flight, n, spins.spin[i]);
+  }
+}
+
+Bounds bounds_from(const Query& q, const Placed<Long>& at, Vector<Long> n, Long t) {
+  Bounds bounds;
+  const Flight flight = flight_from(q, t);
+  add_bounds(q, at, flight, n, bounds);
+  if (rounded_boxes(q)) {
+    add_bounds(q, at, flight, straightened(q, at, n), bounds);
+    add_bounds(q, at, flight, separation(q.a, q.b, at).normal, bounds);
   }
   const bool balls = q.a.kind != Kind::half_space && q.b.kind != Kind::half_space;
   if (balls && norm(at.offset) > 0) {

@@ -33,9 +33,25 @@ double forgiven(const Query& q, double start_gap) {
   return std::abs(start_gap) <= hidden ? hidden : 0.0;
 }
 
+/// Where a proof gave up: an instant of contact among 4096 of the rest of the window.
+Look sampled(const Query& q, const Level& level, Long t0, Long t1) {
+  constexpr int count = 4096;
+  for (int i = 0; i <= count; ++i) {
+    const Long t = t0 + (t1 - t0) * i / count;
+    if (exact_gap(q, t) <= static_cast<double>(level.stop(q, t))) {
+      return {Finding::contact, t};
+    }
+  }
+  return {Finding::unproven, t0};
+}
+
 void check_none_before(const Query& q, double end, double start_gap, Fault fault,
                        Verdict& verdict) {
-  const Look seen = look(q, 0, end, {.floor = forgiven(q, start_gap)});
+  const Level level{.floor = forgiven(q, start_gap)};
+  Look seen = look(q, 0, end, level);
+  if (seen.finding == Finding::unproven) {
+    seen = sampled(q, level, seen.when, end);
+  }
   const double when = static_cast<double>(seen.when);
   if (seen.finding == Finding::contact) {
     const double depth = depth_between(q, seen.when, end);
