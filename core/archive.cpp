@@ -1,5 +1,8 @@
 #include "core/archive.hpp"
 
+#include <fmt/format.h>
+
+#include <cstdint>
 #include <cstring>
 
 namespace kairos {
@@ -47,6 +50,14 @@ void persist(Archive& archive, BodyState& value) { archive(value.pose, value.twi
 void persist(Archive& archive, Motion& value) {
   archive(value.start, value.duration, value.position, value.velocity, value.rotation,
           value.quaternion, value.rotation_rate, value.angular_velocity, value.error_radius);
+}
+
+std::string fingerprint(std::string_view bytes) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char c : bytes) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  }
+  return fmt::format("{:016x}", hash);
 }
 
 }  // namespace core

@@ -121,5 +121,8 @@ void persist(Archive& archive, std::optional<T>& value) {
   archive(*value);
 }
 
+/// A 64-bit fingerprint of bytes, FNV-1a: finds damage and differences, not forgery.
+[[nodiscard]] std::string fingerprint(std::string_view bytes);
+
 }  // namespace core
 }  // namespace kairos

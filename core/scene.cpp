@@ -1,7 +1,5 @@
 #include "core/scene.hpp"
 
-#include "core/document.hpp"
-
 namespace kairos {
 inline namespace core {
 
@@ -10,10 +8,6 @@ Shape Body::collision_shape() const {
     return bounding_box(shape);
   }
   return shape;
-}
-
-Scene read_scene(const std::string& path, const std::vector<Override>& overrides) {
-  return parse_scene(read_text_file(path), path, overrides);
 }
 
 }  // namespace core

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "experiments/simulation.hpp"
+#include "simulation/simulate.hpp"
 
 #include <string_view>
 #include <vector>

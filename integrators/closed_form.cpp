@@ -4,9 +4,7 @@
 #include "integrators/accelerations.hpp"
 #include "integrators/constant_force.hpp"
 #include "integrators/dense_output.hpp"
-#ifdef KAIROS_WITH_GSL
-#include "integrators/gsl/free_top.hpp"
-#endif
+#include "integrators/free_top.hpp"
 
 #include <cmath>
 #include <limits>
@@ -22,15 +20,11 @@ struct Leg {
   bool rotates = false;
   bool tumbles = false;          ///< its angular velocity is not constant
   double bounding_radius = 0.0;  ///< m
-#ifdef KAIROS_WITH_GSL
   FreeTop top;
-#endif
 
   void persist(Archive& archive) {
     archive(before, acceleration, rotates, tumbles, bounding_radius);
-#ifdef KAIROS_WITH_GSL
     archive(top);
-#endif
   }
 };
 
@@ -128,7 +122,6 @@ class ClosedForm final : public Stepper {
       Leg& leg = legs_[i];
       leg.tumbles = leg.rotates && !is_steady(island.inertia[i], states[i]);
       if (leg.tumbles) {
-#ifdef KAIROS_WITH_GSL
         leg.top = FreeTop(island.inertia[i].principal, states[i].pose.orientation,
                           states[i].twist.angular);
         if (!leg.top.resolved()) {
@@ -136,9 +129,6 @@ class ClosedForm final : public Stepper {
                  "resolve";
         }
         longest_ = std::min(longest_, leg.top.segment());
-#else
-        return "closed-form: a tumbling body needs elliptic functions, and this build has no GSL";
-#endif
       }
     }
     fresh_ = false;
@@ -153,11 +143,9 @@ class ClosedForm final : public Stepper {
       state.twist.linear[axis] = end.velocity.rounded();
     }
     if (leg.tumbles) {
-#ifdef KAIROS_WITH_GSL
       const FreeTop::Rotation rotation = leg.top.at((start_ + h_) - epoch_);
       state.pose.orientation = rotation.orientation;
       state.twist.angular = rotation.angular_velocity;
-#endif
     } else if (leg.rotates) {
       state.pose.orientation = rotate(state.twist.angular * h_, state.pose.orientation);
     }
@@ -166,11 +154,9 @@ class ClosedForm final : public Stepper {
   // Two unit quaternions e apart turn a point at distance r to places at most 2 r e apart; another
   // factor of 2 normalises the polynomial; 64 eps covers the rounding of its nodes.
   void tumble([[maybe_unused]] const Leg& leg, [[maybe_unused]] Motion& motion) const {
-#ifdef KAIROS_WITH_GSL
     leg.top.fit(start_ - epoch_, h_, motion);
     motion.error_radius = leg.bounding_radius * (4.0 * leg.top.fit_error(h_) +
                                                  64.0 * std::numeric_limits<double>::epsilon());
-#endif
   }
 
   std::vector<Leg> legs_;

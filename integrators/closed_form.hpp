@@ -10,7 +10,7 @@ namespace kairos::integrators {
 ///
 /// A body that tumbles turns as Jacobi's elliptic functions do [vanZon2007], in segments of a
 /// fraction of a turn: quaternion polynomials with a proven error radius, so steps are shorter than
-/// asked for. That needs GSL; without it the step fails and says so.
+/// asked for.
 ///
 /// The end of a finite step is evaluated in double-double and rounded once, so that energy does
 /// not drift by the rounding of the parabola.

@@ -1,8 +1,9 @@
 #include "experiments/ablation/ablation_experiment.hpp"
 
+#include "core/reading/scene_reader.hpp"
 #include "experiments/realtime/realtime_experiment.hpp"
-#include "experiments/scene_library.hpp"
 #include "experiments/tradeoff/measured_run.hpp"
+#include "simulation/scene_library.hpp"
 
 #include <algorithm>
 

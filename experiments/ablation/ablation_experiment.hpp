@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/model.hpp"
-#include "experiments/programs/experiment_program.hpp"
-#include "experiments/simulation.hpp"
+#include "experiments/sweeps/experiment_program.hpp"
+#include "simulation/simulate.hpp"
 
 #include <string>
 #include <vector>

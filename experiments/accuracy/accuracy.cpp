@@ -6,7 +6,7 @@
 #include "experiments/output/csv_row.hpp"
 #include "experiments/output/output_folder.hpp"
 #include "experiments/parallel_for.hpp"
-#include "experiments/registry.hpp"
+#include "simulation/registry.hpp"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,8 @@
 #include "experiments/bench/bench_peers.hpp"
 #include "experiments/output/atomic_file.hpp"
 #include "experiments/parallel_for.hpp"
-#include "experiments/registry.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
+#include "simulation/registry.hpp"
 
 #include <fmt/format.h>
 

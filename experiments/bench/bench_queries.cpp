@@ -3,7 +3,7 @@
 #include "core/random.hpp"
 #include "experiments/bench/bench.hpp"
 #include "experiments/bench/chunk_race.hpp"
-#include "experiments/registry.hpp"
+#include "simulation/registry.hpp"
 
 #include <fmt/format.h>
 

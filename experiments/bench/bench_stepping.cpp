@@ -1,7 +1,8 @@
+#include "core/reading/scene_reader.hpp"
 #include "experiments/bench/bench.hpp"
 #include "experiments/bench/bench_peers.hpp"
-#include "experiments/scene_library.hpp"
-#include "experiments/simulation.hpp"
+#include "simulation/scene_library.hpp"
+#include "simulation/simulate.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,8 @@
 #include "experiments/checkpoint/checkpoint_file.hpp"
 
-#include "core/csv.hpp"
+#include "core/archive.hpp"
 #include "core/error.hpp"
+#include "core/reading/csv.hpp"
 #include "experiments/output/atomic_file.hpp"
 
 #include <fmt/format.h>
@@ -48,14 +49,6 @@ std::string one_line(std::string_view text) {
 }
 
 }  // namespace
-
-std::string fingerprint(std::string_view bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (const char c : bytes) {
-    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-  }
-  return fmt::format("{:016x}", hash);
-}
 
 void write_checkpoint(const std::string& path, const RunIdentity& identity, double time,
                       std::string_view world) {

@@ -27,7 +27,4 @@ void write_checkpoint(const std::string& path, const RunIdentity& identity, doub
 /// Throws `InputError` with the first thing that differs.
 void require_same_run(const std::string& path, const RunIdentity& saved, const RunIdentity& wanted);
 
-/// A 64-bit fingerprint of bytes, FNV-1a: finds damage and differences, not forgery.
-[[nodiscard]] std::string fingerprint(std::string_view bytes);
-
 }  // namespace kairos::experiments

@@ -1,7 +1,9 @@
 #include "experiments/checkpoint/run_identity.hpp"
 
 #include "core/archive.hpp"
-#include "experiments/version.hpp"
+#include "core/reading/scene_reader.hpp"
+#include "simulation/option.hpp"
+#include "simulation/version.hpp"
 
 #include <fmt/format.h>
 
@@ -29,38 +31,7 @@ std::string drive_fingerprint(const Drive& drive, double duration) {
   return fingerprint(archive.bytes());
 }
 
-std::string frames_text(const FrameTimes& frames) {
-  struct Writer {
-    std::string operator()(const FixedFrames& f) const { return fmt::format("{} s", f.duration); }
-    std::string operator()(const ListedFrames& f) const {
-      return fmt::format("{} listed, {}", f.durations.size(),
-                         fingerprint(fmt::format("{}", fmt::join(f.durations, " "))));
-    }
-    std::string operator()(const JitteredFrames& f) const {
-      return fmt::format("{} s, jitter {}, spikes {} x {}, seed {}", f.mean, f.jitter,
-                         f.spike_probability, f.spike_factor, f.seed);
-    }
-  };
-  return std::visit(Writer{}, frames);
-}
-
 }  // namespace
-
-RunIdentity method_identity(const RunChoice& choice) {
-  return {{"scheme", choice.method.scheme},
-          {"integrator", choice.method.integrator},
-          {"detector", choice.method.detector},
-          {"impact", choice.method.impact},
-          {"frame", choice.frames ? frames_text(*choice.frames) : "the scene's"},
-          {"step", fmt::format("{}", choice.step.value_or(0.0))},
-          {"threshold", fmt::format("{}", choice.threshold)},
-          {"equal-substeps", fmt::format("{}", choice.equal_substeps)},
-          {"max-substeps", fmt::format("{}", choice.max_substeps)},
-          {"tolerance", fmt::format("{}", choice.toi_tolerance)},
-          {"relative-tolerance", fmt::format("{}", choice.stepper.relative_tolerance)},
-          {"absolute-tolerance", fmt::format("{}", choice.stepper.absolute_tolerance)},
-          {"roundoff", fmt::format("{}", choice.roundoff)}};
-}
 
 RunIdentity run_identity(const Model& model, const std::vector<Override>& overrides,
                          const RunChoice& choice) {
@@ -82,7 +53,8 @@ RunIdentity run_identity(const Model& model, const std::vector<Override>& overri
   }
   RunChoice resolved = choice;
   resolved.frames = choice.frames.value_or(scene.frames);
-  for (auto& [key, value] : method_identity(resolved)) {
+  resolved.duration.reset();  // a resumed run may end later
+  for (auto& [key, value] : identity_of(resolved)) {
     add(key, value);
   }
   for (const auto& [name, version] : versions()) {

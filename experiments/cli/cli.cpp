@@ -4,7 +4,7 @@
 #include "core/nearest_name.hpp"
 #include "experiments/cli/commands.hpp"
 #include "experiments/run_error.hpp"
-#include "experiments/version.hpp"
+#include "simulation/version.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -1,6 +1,6 @@
 #include "experiments/cli/commands.hpp"
 #include "experiments/cli/experiment_options.hpp"
-#include "experiments/sweeps/experiment_library.hpp"
+#include "experiments/data_folders.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
 
 #include <CLI/CLI.hpp>

@@ -1,13 +1,14 @@
 #include "core/entity.hpp"
 #include "core/error.hpp"
+#include "core/reading/scene_reader.hpp"
 #include "experiments/cli/commands.hpp"
+#include "experiments/data_folders.hpp"
 #include "experiments/metrics/metrics.hpp"
 #include "experiments/output/csv_row.hpp"
-#include "experiments/registry.hpp"
-#include "experiments/scene_library.hpp"
-#include "experiments/sweeps/experiment_library.hpp"
 #include "experiments/sweeps/sweep_spec.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
+#include "simulation/registry.hpp"
+#include "simulation/scene_library.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 #include "experiments/output/atomic_file.hpp"
 #include "experiments/physworld/search.hpp"
 #include "experiments/run_error.hpp"
-#include "experiments/scene_library.hpp"
+#include "simulation/scene_library.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -1,5 +1,6 @@
-#include "core/csv.hpp"
 #include "core/error.hpp"
+#include "core/reading/csv.hpp"
+#include "core/reading/frame_reader.hpp"
 #include "experiments/cli/commands.hpp"
 #include "experiments/cli/run_options.hpp"
 #include "experiments/run_error.hpp"

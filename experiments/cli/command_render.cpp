@@ -1,5 +1,6 @@
 #include "core/error.hpp"
 #include "core/frame_times.hpp"
+#include "core/reading/frame_reader.hpp"
 #include "experiments/cli/commands.hpp"
 #include "experiments/render/render.hpp"
 #include "experiments/run_error.hpp"

@@ -2,9 +2,9 @@
 #include "core/nearest_name.hpp"
 #include "experiments/cli/commands.hpp"
 #include "experiments/cli/experiment_options.hpp"
+#include "experiments/data_folders.hpp"
 #include "experiments/report/report.hpp"
 #include "experiments/report/report_entry.hpp"
-#include "experiments/sweeps/experiment_library.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
 
 #include <CLI/CLI.hpp>

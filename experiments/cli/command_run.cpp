@@ -4,7 +4,6 @@
 #include "experiments/checkpoint/run_identity.hpp"
 #include "experiments/cli/commands.hpp"
 #include "experiments/cli/run_options.hpp"
-#include "experiments/metrics/run_metrics.hpp"
 #include "experiments/output/atomic_file.hpp"
 #include "experiments/output/broadcast.hpp"
 #include "experiments/output/output_folder.hpp"
@@ -12,6 +11,7 @@
 #include "experiments/output/run_summary.hpp"
 #include "experiments/progress_bar.hpp"
 #include "experiments/run_error.hpp"
+#include "simulation/run_metrics.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

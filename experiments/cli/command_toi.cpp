@@ -1,9 +1,9 @@
-#include "core/csv.hpp"
 #include "core/error.hpp"
+#include "core/reading/csv.hpp"
 #include "experiments/cli/commands.hpp"
-#include "experiments/registry.hpp"
-#include "experiments/simulation.hpp"
 #include "experiments/toi/toi_stream.hpp"
+#include "simulation/registry.hpp"
+#include "simulation/simulate.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

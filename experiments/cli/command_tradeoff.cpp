@@ -1,7 +1,8 @@
+#include "core/reading/frame_reader.hpp"
 #include "experiments/cli/commands.hpp"
 #include "experiments/cli/run_options.hpp"
+#include "experiments/data_folders.hpp"
 #include "experiments/sweeps/experiment.hpp"
-#include "experiments/sweeps/experiment_library.hpp"
 #include "experiments/tradeoff/tradeoff_experiment.hpp"
 
 #include <CLI/CLI.hpp>

@@ -1,5 +1,7 @@
 #include "experiments/cli/experiment_options.hpp"
 
+#include "experiments/programs/run_experiment.hpp"
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 

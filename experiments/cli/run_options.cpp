@@ -1,16 +1,16 @@
 #include "experiments/cli/run_options.hpp"
 
-#include "core/csv.hpp"
 #include "core/error.hpp"
-#include "experiments/registry.hpp"
-#include "experiments/scene_library.hpp"
+#include "core/reading/scene_reader.hpp"
+#include "simulation/option.hpp"
+#include "simulation/registry.hpp"
+#include "simulation/scene_library.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <charconv>
-#include <filesystem>
-#include <system_error>
+#include <span>
+#include <vector>
 
 namespace kairos::experiments {
 namespace {
@@ -24,30 +24,40 @@ std::string names_of(std::span<const std::shared_ptr<const Port>> entries) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-double number(const std::string& text, const char* option) {
-  if (const std::optional<double> value = parse_number(text)) {
-    return *value;
+/// What a plug-in option can be, or what an option means; with its default.
+std::string help_of(const Option& option) {
+  std::string help(option.help);
+  if (option.name == "scheme") {
+    help = names_of(schemes());
+  } else if (option.name == "detector") {
+    help = names_of(detectors());
+  } else if (option.name == "impact") {
+    help = names_of(impact_laws());
+  } else if (option.name == "integrator") {
+    help = "a name of `kairos list integrators`; auto: the scene decides";
   }
-  throw InputError("", 0, option, fmt::format("'{}' is not a finite number", text));
+  if (!option.range.unit.empty() && option.kind == OptionKind::number) {
+    help += fmt::format(", {}", option.range.unit);
+  }
+  const std::string usual = option.default_text();
+  return usual.empty() || option.kind == OptionKind::flag
+             ? help
+             : fmt::format("{} (default {})", help, usual);
 }
 
-std::int64_t whole_number(const std::string& text, const char* option) {
-  std::int64_t value = 0;
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || rest != end) {
-    throw InputError("", 0, option, fmt::format("'{}' is not a whole number", text));
+std::string_view placeholder(OptionKind kind) {
+  switch (kind) {
+    case OptionKind::name:
+      return "NAME";
+    case OptionKind::count:
+      return "N";
+    case OptionKind::duration:
+      return "T";
+    case OptionKind::frames:
+      return "H";
+    default:
+      return "X";
   }
-  return value;
-}
-
-/// `1/60`, `16ms`, or the path of a CSV of frame times.
-FrameTimes frame_times(const std::string& text) {
-  std::error_code error;
-  if (std::filesystem::is_regular_file(text, error) || text.ends_with(".csv")) {
-    return read_frame_csv(text);
-  }
-  return FixedFrames{parse_duration(text, {"", 0, "--frame"})};
 }
 
 /// Scene values that a person sets on the command line.
@@ -60,12 +70,6 @@ Override parse_setting(const std::string& text) {
                                  text));
   }
   return {text.substr(0, equals), text.substr(equals + 1)};
-}
-
-void replace(std::string& name, const std::optional<std::string>& given) {
-  if (given) {
-    name = *given;
-  }
 }
 
 }  // namespace
@@ -94,40 +98,18 @@ std::vector<Override> SceneOptions::overrides() const {
 }
 
 void RunOptions::add_to(CLI::App& command) {
-  const auto option = [&command](const char* name, std::optional<std::string>& value,
-                                 const std::string& meaning, const char* type) {
-    command.add_option(name, value, meaning)->type_name(type);
-  };
-  const MethodChoice defaults;
-  option("--scheme", scheme_, fmt::format("{} (default {})", names_of(schemes()), defaults.scheme),
-         "S");
-  option(
-      "--integrator", integrator_,
-      fmt::format("a name of `kairos list` (default {}: the scene decides)", defaults.integrator),
-      "I");
-  option("--detector", detector_,
-         fmt::format("{} (default {})", names_of(detectors()), defaults.detector), "D");
-  option("--impact", impact_,
-         fmt::format("{} (default {})", names_of(impact_laws()), defaults.impact), "L");
+  for (const Option& option : options()) {
+    const std::string flag = "--" + std::string(option.flag);
+    if (option.kind == OptionKind::flag) {
+      command.add_flag(flag, flags_[option.name], help_of(option));
+    } else {
+      command.add_option(flag, texts_[option.name], help_of(option))
+          ->type_name(std::string(placeholder(option.kind)));
+    }
+  }
   command.add_flag("--thesis", thesis_,
                    "the thesis' own method, where no other option says otherwise: original, "
                    "thesis-euler, sat, thesis");
-  option("--frame", frame_,
-         "frame time: 1/60, 16ms, or a CSV of frame times (default: the scene's)", "H");
-  option("--duration", duration_, "how long, s or with a unit (default: the scene's)", "T");
-  option("--step", step_, "longest integrator step of event-driven (default: a frame)", "H");
-  option("--threshold", threshold_,
-         "largest movement of a substep, m (default: half of the smallest extent)", "X");
-  command.add_flag("--equal-substeps", equal_substeps_, "substepped: a frame in equal parts");
-  option("--max-substeps", max_substeps_, "in one frame; more stop the run (default 100000)", "N");
-  option("--tolerance", tolerance_, "of times of impact, m (default: 1e-9 of the smaller extent)",
-         "X");
-  option("--relative-tolerance", relative_tolerance_, "of controlled integrators (default 1e-10)",
-         "X");
-  option("--absolute-tolerance", absolute_tolerance_,
-         "of controlled integrators, m and m/s (default 1e-12)", "X");
-  command.add_flag("--roundoff", roundoff_,
-                   "replay every step in double-double for the ledger's line roundoff");
 }
 
 RunChoice RunOptions::choice() const {
@@ -135,36 +117,25 @@ RunChoice RunOptions::choice() const {
   if (thesis_) {
     choice.method = MethodChoice::thesis();
   }
-  replace(choice.method.scheme, scheme_);
-  replace(choice.method.integrator, integrator_);
-  replace(choice.method.detector, detector_);
-  replace(choice.method.impact, impact_);
-  if (frame_) {
-    choice.frames = frame_times(*frame_);
+  std::vector<OptionSetting> settings;
+  for (const auto& [name, text] : texts_) {
+    if (text) {
+      settings.emplace_back(name, *text);
+    }
   }
-  if (duration_) {
-    choice.duration = parse_duration(*duration_, {"", 0, "--duration"});
+  for (const auto& [name, on] : flags_) {
+    if (on) {
+      settings.emplace_back(name, true);
+    }
   }
-  if (step_) {
-    choice.step = parse_duration(*step_, {"", 0, "--step"});
+  try {
+    set_options(choice, settings);
+  } catch (const InputError& error) {
+    const Option* option = find_option(error.key());
+    throw InputError(error.file(), error.line(),
+                     option == nullptr ? error.key() : "--" + std::string(option->flag),
+                     error.reason());
   }
-  if (threshold_) {
-    choice.threshold = number(*threshold_, "--threshold");
-  }
-  if (max_substeps_) {
-    choice.max_substeps = whole_number(*max_substeps_, "--max-substeps");
-  }
-  if (tolerance_) {
-    choice.toi_tolerance = number(*tolerance_, "--tolerance");
-  }
-  if (relative_tolerance_) {
-    choice.stepper.relative_tolerance = number(*relative_tolerance_, "--relative-tolerance");
-  }
-  if (absolute_tolerance_) {
-    choice.stepper.absolute_tolerance = number(*absolute_tolerance_, "--absolute-tolerance");
-  }
-  choice.equal_substeps = equal_substeps_;
-  choice.roundoff = roundoff_;
   return choice;
 }
 

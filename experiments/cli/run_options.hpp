@@ -1,10 +1,13 @@
 #pragma once
 
+#include "core/reading/scene_reader.hpp"
 #include "core/scene.hpp"
-#include "experiments/simulation.hpp"
+#include "simulation/simulate.hpp"
 
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace CLI {
@@ -36,12 +39,9 @@ class RunOptions {
 
  private:
   bool thesis_ = false;
-  bool equal_substeps_ = false;
-  bool roundoff_ = false;
-  std::optional<std::string> scheme_, integrator_, detector_, impact_;
-  std::optional<std::string> frame_, duration_, step_;
-  std::optional<std::string> threshold_, max_substeps_, tolerance_;
-  std::optional<std::string> relative_tolerance_, absolute_tolerance_;
+  std::map<std::string_view, std::optional<std::string>>
+      texts_;  ///< as given, by the name of the option
+  std::map<std::string_view, bool> flags_;
 };
 
 }  // namespace kairos::experiments

@@ -1,6 +1,7 @@
 #include "experiments/extremes/extremes_experiment.hpp"
 
 #include "core/error.hpp"
+#include "core/reading/scene_reader.hpp"
 #include "experiments/extremes/thesis_explanation.hpp"
 #include "experiments/named_method.hpp"
 #include "experiments/parallel_for.hpp"

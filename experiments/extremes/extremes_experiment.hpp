@@ -1,8 +1,8 @@
 #pragma once
 
 #include "experiments/extremes/extreme_case.hpp"
-#include "experiments/programs/experiment_program.hpp"
-#include "experiments/simulation.hpp"
+#include "experiments/sweeps/experiment_program.hpp"
+#include "simulation/simulate.hpp"
 
 #include <string>
 #include <string_view>

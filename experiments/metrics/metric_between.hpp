@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/recorder.hpp"
-#include "experiments/metrics/penetration.hpp"
+#include "simulation/penetration.hpp"
 
 #include <deque>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "experiments/metrics/metric_impacts.hpp"
 
 #include "core/impact_law.hpp"
-#include "experiments/registry.hpp"
+#include "simulation/registry.hpp"
 
 namespace kairos::experiments {
 

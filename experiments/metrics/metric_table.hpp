@@ -6,7 +6,7 @@
 #include "experiments/metrics/metric_crossing.hpp"
 #include "experiments/metrics/metric_impacts.hpp"
 #include "experiments/metrics/metrics.hpp"
-#include "experiments/metrics/run_metrics.hpp"
+#include "simulation/run_metrics.hpp"
 
 #include <vector>
 

@@ -2,7 +2,6 @@
 
 #include "core/archive.hpp"
 #include "core/error.hpp"
-#include "experiments/checkpoint/checkpoint_file.hpp"
 #include "experiments/run_error.hpp"
 
 #include <fcntl.h>

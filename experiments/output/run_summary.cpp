@@ -1,14 +1,17 @@
 #include "experiments/output/run_summary.hpp"
 
+#include "core/reading/csv.hpp"
 #include "experiments/output/json_writer.hpp"
-#include "experiments/registry.hpp"
-#include "experiments/version.hpp"
+#include "simulation/option.hpp"
+#include "simulation/registry.hpp"
+#include "simulation/version.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <set>
 
 namespace kairos::experiments {
@@ -74,26 +77,39 @@ void add_bodies(JsonWriter& json, const Model& model) {
   json.close();
 }
 
+/// A value of the table of options, as JSON; what the scene decides is left out here.
+void add_option(JsonWriter& json, const Option& option, const RunChoice& choice) {
+  const std::string text = option.get(choice);
+  switch (option.kind) {
+    case OptionKind::flag:
+      json.flag(option.name, text == "true");
+      return;
+    case OptionKind::number:
+    case OptionKind::count:
+    case OptionKind::duration:
+      if (!text.empty()) {
+        json.number(option.name,
+                    parse_number(text).value_or(std::numeric_limits<double>::infinity()));
+      }
+      return;
+    case OptionKind::name:
+    case OptionKind::frames:
+      json.text(option.name, text);
+      return;
+  }
+}
+
 void add_method(JsonWriter& json, const FinishedRun& run) {
-  const RunChoice& choice = run.choice;
-  const Scene& scene = run.model.scene();
+  RunChoice choice = run.choice;
+  choice.frames = choice.frames.value_or(run.model.scene().frames);
+  choice.duration = choice.duration.value_or(run.model.scene().duration);
   json.open("method");
-  json.text("scheme", choice.method.scheme);
-  json.text("integrator", choice.method.integrator);
+  for (const Option& option : options()) {
+    add_option(json, option, choice);
+  }
   json.text("integrators_in_use", integrators_in_use(run));
-  json.text("detector", choice.method.detector);
-  json.text("impact", choice.method.impact);
   json.text("broad_phase", run.model.broad_phase());
-  json.number("mean_frame", mean_frame_duration(choice.frames.value_or(scene.frames)));
-  json.number("duration", choice.duration.value_or(scene.duration));
-  json.number("step", choice.step.value_or(0.0));
-  json.number("threshold", choice.threshold);
-  json.flag("equal_substeps", choice.equal_substeps);
-  json.count("max_substeps", choice.max_substeps);
-  json.number("tolerance", choice.toi_tolerance);
-  json.number("relative_tolerance", choice.stepper.relative_tolerance);
-  json.number("absolute_tolerance", choice.stepper.absolute_tolerance);
-  json.flag("roundoff", choice.roundoff);
+  json.number("mean_frame", mean_frame_duration(*choice.frames));
   json.close();
 }
 

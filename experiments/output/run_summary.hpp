@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/model.hpp"
-#include "experiments/metrics/run_metrics.hpp"
-#include "experiments/simulation.hpp"
+#include "simulation/run_metrics.hpp"
+#include "simulation/simulate.hpp"
 
 #include <string>
 

@@ -2,10 +2,11 @@
 
 #include "core/error.hpp"
 #include "core/random.hpp"
+#include "core/reading/scene_reader.hpp"
 #include "core/scene.hpp"
 #include "experiments/output/broadcast.hpp"
 #include "experiments/render/footage.hpp"
-#include "experiments/simulation.hpp"
+#include "simulation/simulate.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,8 @@
 #include "experiments/rally/rally_run.hpp"
 
 #include "core/error.hpp"
-#include "experiments/scene_library.hpp"
+#include "core/reading/scene_reader.hpp"
+#include "simulation/scene_library.hpp"
 
 #include <fmt/format.h>
 

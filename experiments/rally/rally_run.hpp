@@ -3,7 +3,7 @@
 #include "core/scene.hpp"
 #include "experiments/rally/interval.hpp"
 #include "experiments/rally/stroke_watch.hpp"
-#include "experiments/simulation.hpp"
+#include "simulation/simulate.hpp"
 
 #include <string>
 #include <vector>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/drives/track.hpp"
+#include "core/reading/track_reader.hpp"
 
 #include <cstdint>
 #include <string>

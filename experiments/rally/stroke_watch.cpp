@@ -1,7 +1,7 @@
 #include "experiments/rally/stroke_watch.hpp"
 
 #include "experiments/metrics/metrics.hpp"
-#include "experiments/registry.hpp"
+#include "simulation/registry.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -4,7 +4,7 @@
 #include "experiments/output/json_writer.hpp"
 #include "experiments/output/record_journal.hpp"
 #include "experiments/parallel_for.hpp"
-#include "experiments/version.hpp"
+#include "simulation/version.hpp"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,9 @@
 
 #include "core/archive.hpp"
 #include "core/error.hpp"
-#include "experiments/metrics/penetration.hpp"
-#include "experiments/simulation.hpp"
+#include "core/reading/scene_reader.hpp"
+#include "simulation/penetration.hpp"
+#include "simulation/simulate.hpp"
 
 #include <fmt/format.h>
 

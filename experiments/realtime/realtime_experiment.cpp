@@ -1,11 +1,12 @@
 #include "experiments/realtime/realtime_experiment.hpp"
 
 #include "core/random.hpp"
+#include "core/reading/scene_reader.hpp"
 #include "experiments/metrics/metrics.hpp"
 #include "experiments/named_method.hpp"
 #include "experiments/parallel_for.hpp"
-#include "experiments/scene_library.hpp"
-#include "experiments/simulation.hpp"
+#include "simulation/scene_library.hpp"
+#include "simulation/simulate.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 #include "experiments/render/footage.hpp"
 
-#include "core/csv.hpp"
-#include "core/document.hpp"
 #include "core/error.hpp"
-#include "experiments/sweeps/table.hpp"
+#include "core/reading/csv.hpp"
+#include "core/reading/document.hpp"
+#include "experiments/output/table.hpp"
 
 #include <fmt/format.h>
 

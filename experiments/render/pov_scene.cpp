@@ -1,8 +1,8 @@
 #include "experiments/render/pov_scene.hpp"
 
-#include "core/csv.hpp"
 #include "core/error.hpp"
-#include "experiments/registry.hpp"
+#include "core/reading/csv.hpp"
+#include "simulation/registry.hpp"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,11 @@
 #include "experiments/report/paper.hpp"
 
-#include "core/csv.hpp"
+#include "core/reading/csv.hpp"
+#include "experiments/data_folders.hpp"
+#include "experiments/output/table.hpp"
 #include "experiments/report/bibliography.hpp"
 #include "experiments/report/figure_html.hpp"
 #include "experiments/report/report_html.hpp"
-#include "experiments/sweeps/experiment_library.hpp"
-#include "experiments/sweeps/table.hpp"
 
 #include <fmt/format.h>
 

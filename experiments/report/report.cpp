@@ -1,13 +1,13 @@
 #include "experiments/report/report.hpp"
 
 #include "core/error.hpp"
+#include "experiments/data_folders.hpp"
 #include "experiments/output/atomic_file.hpp"
 #include "experiments/report/figure_html.hpp"
 #include "experiments/report/markdown.hpp"
 #include "experiments/report/paper.hpp"
 #include "experiments/report/report_entry.hpp"
 #include "experiments/report/report_html.hpp"
-#include "experiments/sweeps/experiment_library.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "experiments/report/report_entry.hpp"
 
-#include "experiments/sweeps/experiment_library.hpp"
-#include "experiments/sweeps/table.hpp"
+#include "experiments/data_folders.hpp"
+#include "experiments/output/table.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
 
 #include <algorithm>

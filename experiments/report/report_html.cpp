@@ -1,7 +1,7 @@
 #include "experiments/report/report_html.hpp"
 
-#include "core/csv.hpp"
-#include "experiments/sweeps/table.hpp"
+#include "core/reading/csv.hpp"
+#include "experiments/output/table.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "experiments/sweeps/axis_reader.hpp"
 
-#include "experiments/sweeps/sweep_method.hpp"
+#include "simulation/option.hpp"
 
 #include <fmt/format.h>
 
@@ -90,10 +90,10 @@ Axis read_axis(const SpecSection& section, const Values& constants) {
   if (axis.name.empty()) {
     section.fail("name", "is missing; an axis needs a name or a key");
   }
-  if (axis.key.starts_with("method.") && !is_method_option(axis.key.substr(7))) {
+  if (axis.key.starts_with("method.") && find_option(axis.key.substr(7)) == nullptr) {
     section.fail("key", fmt::format("unknown; allowed: a key of the scene, or method. "
                                     "followed by {}",
-                                    method_option_names()));
+                                    option_names()));
   }
   const std::string kind = kind_of(section);
   axis.logarithmic = kind == "log";

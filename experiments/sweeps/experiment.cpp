@@ -1,11 +1,11 @@
 #include "experiments/sweeps/experiment.hpp"
 
+#include "experiments/figures/draw_figures.hpp"
 #include "experiments/metrics/metrics.hpp"
 #include "experiments/output/output_folder.hpp"
-#include "experiments/report/figure.hpp"
+#include "experiments/output/table.hpp"
 #include "experiments/sweeps/sweep.hpp"
-#include "experiments/sweeps/table.hpp"
-#include "experiments/version.hpp"
+#include "simulation/version.hpp"
 
 #include <fmt/format.h>
 
@@ -86,16 +86,10 @@ std::string file_text(const std::string& path) {
 
 }  // namespace
 
-ExperimentOutcome run_experiment(const ExperimentSpec& spec, const ExperimentOptions& options,
-                                 const std::string& folder) {
+ExperimentOutcome run_sweeps(const ExperimentSpec& spec, const ExperimentOptions& options,
+                             const std::string& folder) {
   ExperimentOutcome outcome;
   const auto start = Clock::now();
-  if (!spec.program.empty()) {
-    const ProgramOutput made = find_program(spec.program)->run(spec, options.size, options.threads);
-    outcome = publish_program(spec, options, made, folder);
-    outcome.run_seconds = seconds_since(start) - outcome.figure_seconds;
-    return outcome;
-  }
   OutputFolder out(folder);
   std::vector<std::string> journals;
   Table columns{{"sweep", "column", "role", "unit", "label", "scale"}, {}};

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "experiments/programs/experiment_program.hpp"
+#include "experiments/sweeps/experiment_program.hpp"
 #include "experiments/sweeps/sweep_spec.hpp"
 
 #include <cstddef>
@@ -23,15 +23,15 @@ struct ExperimentOutcome {
   std::string figure_problem;  ///< empty if the figures are drawn
 };
 
-/// Runs the sweeps of an experiment, writes their tables to `folder`, then draws the figures.
+/// Runs the sweeps of a spec, writes their tables to `folder`, then draws the figures.
 ///
 /// Files: `SWEEP_runs.csv` (a row per run), `SWEEP_summary.csv` (quartiles over repeats),
 /// `SWEEP_series.csv` and `SWEEP_apexes.csv` where asked for, `columns.csv` (what the columns
 /// mean), `manifest.csv` (question, method, command, seed, versions), `spec.toml` (a copy of the
 /// spec), `timings.csv` (the only file that differs between two runs), and from the figure script
 /// `NAME.svg`, `NAME.png` and `figures.csv`. Throws `InputError` and `RunError`.
-ExperimentOutcome run_experiment(const ExperimentSpec& spec, const ExperimentOptions& options,
-                                 const std::string& folder);
+ExperimentOutcome run_sweeps(const ExperimentSpec& spec, const ExperimentOptions& options,
+                             const std::string& folder);
 
 /// The same for what a program made: its tables, `manifest.csv`, `columns.csv`, `spec.toml`,
 /// `timings.csv`, then the figures.

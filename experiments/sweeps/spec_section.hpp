@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/table_reader.hpp"
+#include "core/reading/table_reader.hpp"
 #include "experiments/sweeps/expression.hpp"
 
 #include <cstdint>

@@ -1,6 +1,7 @@
 #include "experiments/sweeps/sweep.hpp"
 
 #include "core/error.hpp"
+#include "core/reading/scene_reader.hpp"
 #include "experiments/metrics/metric_series.hpp"
 #include "experiments/metrics/metrics.hpp"
 #include "experiments/output/broadcast.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "experiments/output/table.hpp"
 #include "experiments/sweeps/sweep_spec.hpp"
-#include "experiments/sweeps/table.hpp"
 
 #include <cstddef>
 #include <string>

@@ -1,8 +1,9 @@
 #include "experiments/sweeps/sweep_journal.hpp"
 
 #include "core/archive.hpp"
-#include "experiments/checkpoint/checkpoint_file.hpp"
+#include "core/reading/scene_reader.hpp"
 #include "experiments/checkpoint/run_identity.hpp"
+#include "simulation/option.hpp"
 
 #include <fmt/format.h>
 
@@ -62,12 +63,11 @@ std::string sweep_key(const SweepSpec& spec, const std::vector<PlannedRun>& plan
     for (const Override& o : run.overrides) {
       key += fmt::format("{}={}\n", o.key, o.value);
     }
-    for (const auto& [name, value] : method_identity(run.choice)) {
+    for (const auto& [name, value] : identity_of(run.choice)) {
       key += fmt::format("{}={}\n", name, value);
     }
-    key += fmt::format("{}\n", run.choice.duration.value_or(0.0));
   }
-  return "kairos sweep 1 " + fingerprint(key);
+  return "kairos sweep 2 " + fingerprint(key);
 }
 
 }  // namespace kairos::experiments

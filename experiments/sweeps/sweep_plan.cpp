@@ -2,9 +2,9 @@
 
 #include "core/error.hpp"
 #include "core/random.hpp"
-#include "experiments/registry.hpp"
-#include "experiments/scene_library.hpp"
-#include "experiments/sweeps/sweep_method.hpp"
+#include "simulation/option.hpp"
+#include "simulation/registry.hpp"
+#include "simulation/scene_library.hpp"
 
 #include <fmt/format.h>
 
@@ -60,24 +60,28 @@ std::string unquoted(const std::string& toml) {
              : toml;
 }
 
-/// Sets a method option from a spec: names as text, numbers as expressions, true and false.
-void set_option(const SweepSpec& spec, const Setting& option, const Values& values,
-                MethodOptions& options, std::string& refused) {
-  if (option.array) {
-    throw InputError(spec.file, option.line, option.key, "must be one value, not a list");
+/// A method option from a spec: names and flags as they stand, numbers as expressions.
+void read_option(const SweepSpec& spec, const Setting& setting, const Values& values,
+                 std::vector<OptionSetting>& options, std::string& refused) {
+  if (setting.array) {
+    throw InputError(spec.file, setting.line, setting.key, "must be one value, not a list");
   }
-  const std::string text = unquoted(toml_text(spec, option, values, refused));
+  const Option& option = *find_option(setting.key);
+  const std::string text = unquoted(toml_text(spec, setting, values, refused));
+  if (!refused.empty()) {
+    return;
+  }
+  const bool as_written = option.kind == OptionKind::name || text == "true" || text == "false";
+  const OptionValue value =
+      as_written ? OptionValue(text)
+                 : OptionValue(value_of(spec, setting.key, setting.line, text, values));
   try {
-    if (is_text_option(option.key)) {
-      options.set_text(option.key, text);
-    } else if (text == "true" || text == "false") {
-      options.set_number(option.key, text == "true" ? 1.0 : 0.0);
-    } else if (refused.empty()) {
-      options.set_number(option.key, value_of(spec, option.key, option.line, text, values));
-    }
-  } catch (const std::invalid_argument& error) {
-    throw InputError(spec.file, option.line, option.key, error.what());
+    RunChoice alone{.frames = FixedFrames{}};  // so that a message has the line of its setting
+    set_option(alone, setting.key, value);
+  } catch (const InputError& error) {
+    throw InputError(spec.file, setting.line, setting.key, error.reason());
   }
+  options.emplace_back(setting.key, value);
 }
 
 /// Names that do not exist are wrong in the spec, not refused run by run.
@@ -151,6 +155,16 @@ std::vector<AxisValue> values_at(const SweepSpec& spec, std::size_t point, std::
   return out;
 }
 
+/// Jittered frames are drawn anew for each run, unless the spec names their seed.
+void draw_frames(RunChoice& choice, const std::vector<OptionSetting>& options, std::uint64_t seed) {
+  const bool named = std::any_of(options.begin(), options.end(),
+                                 [](const auto& option) { return option.first == "frame_seed"; });
+  if (auto* frames = choice.frames ? std::get_if<JitteredFrames>(&*choice.frames) : nullptr;
+      frames != nullptr && !named) {
+    frames->seed = seed;
+  }
+}
+
 /// Turns axis values into scene values and method options.
 void fill(const SweepSpec& spec, PlannedRun& run) {
   const MethodSpec& method = spec.methods[run.method];
@@ -162,10 +176,10 @@ void fill(const SweepSpec& spec, PlannedRun& run) {
       run.values[spec.axes[i].name] = *run.axis_values[i].number;
     }
   }
-  MethodOptions options;
+  std::vector<OptionSetting> options;
   for (const auto* settings : {&spec.options, &method.options}) {
     for (const Setting& option : *settings) {
-      set_option(spec, option, run.values, options, run.refused);
+      read_option(spec, option, run.values, options, run.refused);
     }
   }
   for (std::size_t i = 0; i < spec.axes.size(); ++i) {
@@ -173,7 +187,7 @@ void fill(const SweepSpec& spec, PlannedRun& run) {
     const AxisValue& value = run.axis_values[i];
     if (axis.key.starts_with("method.")) {
       const Setting option{axis.key.substr(7), {{value.toml, false}}, false, axis.line};
-      set_option(spec, option, run.values, options, run.refused);
+      read_option(spec, option, run.values, options, run.refused);
     } else if (!axis.key.empty()) {
       run.overrides.push_back({axis.key, value.toml});
     }
@@ -183,13 +197,14 @@ void fill(const SweepSpec& spec, PlannedRun& run) {
       run.overrides.push_back({setting.key, toml_text(spec, setting, run.values, run.refused)});
     }
   }
+  const std::size_t draw =
+      run.point * static_cast<std::size_t>(spec.repeats) + static_cast<std::size_t>(run.repeat);
   try {
-    const std::size_t draw =
-        run.point * static_cast<std::size_t>(spec.repeats) + static_cast<std::size_t>(run.repeat);
-    run.choice = options.choice(Random(spec.seed, stream_of("frames"), draw).bits());
-  } catch (const std::invalid_argument& error) {
-    throw InputError(spec.file, spec.line, "method", error.what());
+    set_options(run.choice, options);
+  } catch (const InputError& error) {
+    throw InputError(spec.file, spec.line, error.key(), error.reason());
   }
+  draw_frames(run.choice, options, Random(spec.seed, stream_of("frames"), draw).bits());
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "experiments/simulation.hpp"
+#include "core/reading/scene_reader.hpp"
 #include "experiments/sweeps/sweep_spec.hpp"
+#include "simulation/simulate.hpp"
 
 #include <string>
 #include <vector>

@@ -2,10 +2,9 @@
 
 #include "core/error.hpp"
 #include "experiments/metrics/metrics.hpp"
-#include "experiments/programs/experiment_program.hpp"
 #include "experiments/sweeps/axis_reader.hpp"
 #include "experiments/sweeps/spec_section.hpp"
-#include "experiments/sweeps/sweep_method.hpp"
+#include "simulation/option.hpp"
 
 #include <fmt/format.h>
 
@@ -63,10 +62,10 @@ MethodSpec read_method(const SpecSection& section) {
       method.name = section.text("name");
     } else if (key == "set") {
       read_settings(section.tables("set").front(), method.set);
-    } else if (is_method_option(key)) {
+    } else if (find_option(key) != nullptr) {
       put(read_setting(key, item), method.options);
     } else {
-      item.fail(fmt::format("unknown key; allowed: name, set, {}", method_option_names()));
+      item.fail(fmt::format("unknown key; allowed: name, set, {}", option_names()));
     }
   }
   return method;
@@ -152,8 +151,8 @@ SweepSpec read_sweep(const SpecSection& section, SweepSpec sweep) {
   }
   for (const SpecSection& options : section.tables("options")) {
     for (const auto& [key, item] : options.entries()) {
-      if (!is_method_option(key)) {
-        item.fail(fmt::format("unknown key; allowed: {}", method_option_names()));
+      if (find_option(key) == nullptr) {
+        item.fail(fmt::format("unknown key; allowed: {}", option_names()));
       }
     }
     read_settings(options, sweep.options);
@@ -217,9 +216,7 @@ ExperimentSpec read_root(const SpecSection& section, const std::string& path) {
     experiment.scenes = section.texts("scenes");
   }
   if (!experiment.program.empty()) {
-    if (find_program(experiment.program) == nullptr) {
-      section.fail("program", fmt::format("'{}' is unknown", experiment.program));
-    }
+    experiment.program_line = section.find("program")->value().line;
     return experiment;
   }
   SweepSpec shared;

@@ -94,11 +94,12 @@ struct ExperimentSpec {
   std::string path;
   std::string name;
   std::string title;
-  std::string asks;     ///< the question
-  std::string how;      ///< the method of the experiment
-  std::string finding;  ///< what to look at
-  std::string figure;   ///< script in `experiments/figures`; empty: the generic one
-  std::string program;  ///< what is run instead of sweeps (`find_program`); empty: the sweeps
+  std::string asks;      ///< the question
+  std::string how;       ///< the method of the experiment
+  std::string finding;   ///< what to look at
+  std::string figure;    ///< script in `experiments/figures`; empty: the generic one
+  std::string program;   ///< what is run instead of sweeps (`run_experiment`); empty: the sweeps
+  int program_line = 0;  ///< where it was written
   std::vector<std::string> scenes;  ///< of a program
   std::vector<SweepSpec> sweeps;
 };

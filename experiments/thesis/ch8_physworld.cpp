@@ -1,10 +1,11 @@
 #include "core/error.hpp"
+#include "core/reading/scene_reader.hpp"
 #include "experiments/output/broadcast.hpp"
 #include "experiments/physworld/story.hpp"
-#include "experiments/scene_library.hpp"
-#include "experiments/simulation.hpp"
 #include "experiments/thesis/frames.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
+#include "simulation/scene_library.hpp"
+#include "simulation/simulate.hpp"
 
 #include <fmt/format.h>
 

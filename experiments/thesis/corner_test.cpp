@@ -1,6 +1,6 @@
 #include "experiments/thesis/corner_test.hpp"
 
-#include "experiments/registry.hpp"
+#include "simulation/registry.hpp"
 
 namespace kairos::experiments::thesis {
 namespace {

@@ -1,5 +1,5 @@
 #include "core/random.hpp"
-#include "experiments/registry.hpp"
+#include "simulation/registry.hpp"
 #include "experiments/thesis/errata.hpp"
 #include "experiments/thesis/errata_runs.hpp"
 #include "experiments/thesis/figure_data.hpp"

@@ -1,3 +1,4 @@
+#include "core/reading/scene_reader.hpp"
 #include "experiments/thesis/errata.hpp"
 #include "experiments/thesis/errata_runs.hpp"
 #include "experiments/thesis/phase_runs.hpp"

@@ -1,8 +1,9 @@
 #include "core/model.hpp"
-#include "experiments/registry.hpp"
+#include "core/reading/scene_reader.hpp"
 #include "experiments/thesis/errata.hpp"
 #include "experiments/thesis/errata_runs.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
+#include "simulation/registry.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,10 @@
 #pragma once
 
+#include "core/reading/scene_reader.hpp"
 #include "core/scene.hpp"
 #include "experiments/metrics/metrics.hpp"
-#include "experiments/scene_library.hpp"
-#include "experiments/simulation.hpp"
+#include "simulation/scene_library.hpp"
+#include "simulation/simulate.hpp"
 
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
-#include "experiments/registry.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
+#include "simulation/registry.hpp"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
-#include "core/off_file.hpp"
-#include "experiments/scene_library.hpp"
+#include "core/reading/off_file.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
+#include "simulation/scene_library.hpp"
 
 #include <cmath>
 #include <numbers>

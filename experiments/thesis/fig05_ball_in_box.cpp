@@ -1,6 +1,6 @@
 #include "core/random.hpp"
-#include "experiments/registry.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
+#include "simulation/registry.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -1,7 +1,8 @@
-#include "experiments/scene_library.hpp"
-#include "experiments/simulation.hpp"
+#include "core/reading/scene_reader.hpp"
 #include "experiments/thesis/stage_trace.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
+#include "simulation/scene_library.hpp"
+#include "simulation/simulate.hpp"
 
 #include <algorithm>
 

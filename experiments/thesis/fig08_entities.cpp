@@ -1,4 +1,4 @@
-#include "core/scene_keys.hpp"
+#include "core/reading/scene_keys.hpp"
 #include "experiments/thesis/entity_survey.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
 

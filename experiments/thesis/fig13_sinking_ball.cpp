@@ -1,7 +1,7 @@
 #include "core/trajectory.hpp"
-#include "experiments/registry.hpp"
 #include "experiments/thesis/sinking_ball.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
+#include "simulation/registry.hpp"
 
 namespace kairos::experiments::thesis {
 namespace {

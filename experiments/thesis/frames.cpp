@@ -1,6 +1,6 @@
 #include "experiments/thesis/frames.hpp"
 
-#include "experiments/report/figure.hpp"
+#include "experiments/figures/draw_figures.hpp"
 
 #include <fmt/format.h>
 

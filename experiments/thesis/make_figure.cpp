@@ -1,7 +1,7 @@
+#include "experiments/figures/draw_figures.hpp"
 #include "experiments/output/output_folder.hpp"
-#include "experiments/report/figure.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
-#include "experiments/version.hpp"
+#include "simulation/version.hpp"
 
 #include <fmt/format.h>
 

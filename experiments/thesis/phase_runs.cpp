@@ -2,8 +2,8 @@
 
 #include "core/impact_law.hpp"
 #include "core/random.hpp"
-#include "experiments/registry.hpp"
 #include "experiments/thesis/errata_runs.hpp"
+#include "simulation/registry.hpp"
 
 #include <fmt/format.h>
 

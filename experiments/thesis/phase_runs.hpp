@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/scene.hpp"
-#include "experiments/simulation.hpp"
+#include "simulation/simulate.hpp"
 
 #include <string>
 

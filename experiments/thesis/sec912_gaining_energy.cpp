@@ -1,10 +1,11 @@
+#include "core/reading/scene_reader.hpp"
 #include "experiments/metrics/metric_series.hpp"
 #include "experiments/parallel_for.hpp"
-#include "experiments/registry.hpp"
-#include "experiments/scene_library.hpp"
-#include "experiments/simulation.hpp"
 #include "experiments/thesis/literal_bounce.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
+#include "simulation/registry.hpp"
+#include "simulation/scene_library.hpp"
+#include "simulation/simulate.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,11 @@
 #include "experiments/thesis/sinking_ball.hpp"
 
+#include "core/reading/scene_reader.hpp"
 #include "core/trajectory.hpp"
-#include "experiments/registry.hpp"
 #include "experiments/run_error.hpp"
-#include "experiments/scene_library.hpp"
-#include "experiments/simulation.hpp"
+#include "simulation/registry.hpp"
+#include "simulation/scene_library.hpp"
+#include "simulation/simulate.hpp"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "experiments/sweeps/table.hpp"
+#include "experiments/output/table.hpp"
 #include "experiments/tradeoff/candidates.hpp"
 #include "experiments/tradeoff/reference.hpp"
 

@@ -1,6 +1,6 @@
 #include "experiments/tradeoff/candidates.hpp"
 
-#include "experiments/registry.hpp"
+#include "simulation/registry.hpp"
 
 #include <fmt/format.h>
 

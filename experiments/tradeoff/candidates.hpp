@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/model.hpp"
-#include "experiments/simulation.hpp"
+#include "simulation/simulate.hpp"
 
 #include <string>
 #include <vector>

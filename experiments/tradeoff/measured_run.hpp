@@ -1,7 +1,7 @@
 #pragma once
 
-#include "experiments/metrics/run_metrics.hpp"
-#include "experiments/simulation.hpp"
+#include "simulation/run_metrics.hpp"
+#include "simulation/simulate.hpp"
 
 #include <map>
 #include <string>

@@ -1,7 +1,8 @@
 #include "experiments/tradeoff/tradeoff_experiment.hpp"
 
-#include "experiments/scene_library.hpp"
+#include "core/reading/scene_reader.hpp"
 #include "experiments/tradeoff/recommend.hpp"
+#include "simulation/scene_library.hpp"
 
 #include <fmt/format.h>
 

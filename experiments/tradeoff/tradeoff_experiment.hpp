@@ -1,6 +1,6 @@
 #pragma once
 
-#include "experiments/programs/experiment_program.hpp"
+#include "experiments/sweeps/experiment_program.hpp"
 #include "experiments/tradeoff/assessment.hpp"
 
 namespace kairos::experiments {

@@ -1,4 +1,4 @@
-#include <kairos/ccd/certified.hpp>
+#include <kairos/ccd.hpp>
 
 #include <iostream>
 

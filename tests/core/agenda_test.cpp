@@ -1,5 +1,6 @@
+#include "core/reading/scene_reader.hpp"
 #include "core/scene.hpp"
-#include "core/schemes/event_agenda.hpp"
+#include "core/schemes/event/event_agenda.hpp"
 #include "tests/catch.hpp"
 
 #include <string>

@@ -1,8 +1,9 @@
 // Every way of writing a scene wrong that we could think of: refused with the line, the key, what
 // is wrong and what is allowed.
 
-#include "core/document.hpp"
 #include "core/error.hpp"
+#include "core/reading/document.hpp"
+#include "core/reading/scene_reader.hpp"
 #include "core/scene.hpp"
 #include "tests/catch.hpp"
 #include "tests/locations.hpp"

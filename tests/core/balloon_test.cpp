@@ -1,5 +1,6 @@
 #include "core/entity.hpp"
 #include "core/model.hpp"
+#include "core/reading/scene_reader.hpp"
 #include "tests/catch.hpp"
 #include "tests/locations.hpp"
 

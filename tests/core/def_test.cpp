@@ -1,9 +1,10 @@
 // The thesis' own formats: .off models and .def scenes, and every way of getting them wrong.
 
-#include "core/def_reader.hpp"
 #include "core/error.hpp"
 #include "core/model.hpp"
-#include "core/off_file.hpp"
+#include "core/reading/def_reader.hpp"
+#include "core/reading/off_file.hpp"
+#include "core/reading/scene_reader.hpp"
 #include "core/scene.hpp"
 #include "tests/catch.hpp"
 #include "tests/temporary_folder.hpp"

@@ -3,6 +3,7 @@
 #include "core/exact_solution.hpp"
 
 #include "core/error.hpp"
+#include "core/reading/scene_reader.hpp"
 #include "tests/catch.hpp"
 #include "tests/locations.hpp"
 

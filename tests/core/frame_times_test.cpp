@@ -1,6 +1,7 @@
 #include "core/frame_times.hpp"
 
 #include "core/error.hpp"
+#include "core/reading/frame_reader.hpp"
 #include "tests/catch.hpp"
 #include "tests/temporary_folder.hpp"
 

@@ -1,4 +1,4 @@
-#include "core/schemes/impact_history.hpp"
+#include "core/schemes/event/impact_history.hpp"
 
 #include "tests/catch.hpp"
 

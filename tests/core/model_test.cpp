@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/island_force.hpp"
+#include "core/reading/scene_reader.hpp"
 #include "tests/catch.hpp"
 #include "tests/locations.hpp"
 

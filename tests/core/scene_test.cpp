@@ -1,13 +1,14 @@
 #include "core/scene.hpp"
 
-#include "core/csv.hpp"
-#include "core/document.hpp"
 #include "core/entity.hpp"
 #include "core/error.hpp"
 #include "core/exact_solution.hpp"
 #include "core/model.hpp"
 #include "core/nearest_name.hpp"
-#include "core/scene_keys.hpp"
+#include "core/reading/csv.hpp"
+#include "core/reading/document.hpp"
+#include "core/reading/scene_keys.hpp"
+#include "core/reading/scene_reader.hpp"
 #include "tests/catch.hpp"
 #include "tests/locations.hpp"
 

@@ -1,5 +1,6 @@
 #include "core/trajectory.hpp"
 
+#include "core/reading/scene_reader.hpp"
 #include "tests/catch.hpp"
 #include "tests/locations.hpp"
 

@@ -3,7 +3,7 @@
 
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
-#include "tests/experiments/scenes.hpp"
+#include "tests/simulation/scenes.hpp"
 
 #include <fmt/format.h>
 
@@ -176,9 +176,9 @@ TEST_CASE("wrong command lines exit with 2 and say what is wrong", "[cli]") {
       {{"run", scene, "--threshold", "wide"}, "--threshold"},
       {{"run", scene, "--tolerance", "-1e-9"}, "tolerance"},
       {{"run", scene, "--tolerance", "nan"}, "--tolerance"},
-      {{"run", scene, "--max-substeps", "0"}, "max substeps"},
+      {{"run", scene, "--max-substeps", "0"}, "--max-substeps: is 0; allowed: a whole number from 1 to"},
       {{"run", scene, "--max-substeps", "1.5"}, "--max-substeps"},
-      {{"run", scene, "--relative-tolerance", "-1"}, "relative tolerance"},
+      {{"run", scene, "--relative-tolerance", "-1"}, "--relative-tolerance: is -1; allowed: a number > 0 and <= 1"},
       {{"run", scene, "--absolute-tolerance", "x"}, "--absolute-tolerance"},
       {{"run", scene, "--set", "radius"}, "--set"},
       {{"run", scene, "--set", "=1"}, "--set"},

@@ -1,12 +1,11 @@
 // The shipped experiments: their specs can be read and planned, and what one leaves is the same
 // twice.
 
-#include "experiments/sweeps/experiment.hpp"
-
+#include "experiments/data_folders.hpp"
+#include "experiments/output/table.hpp"
 #include "experiments/parallel_for.hpp"
-#include "experiments/sweeps/experiment_library.hpp"
+#include "experiments/programs/run_experiment.hpp"
 #include "experiments/sweeps/sweep_plan.hpp"
-#include "experiments/sweeps/table.hpp"
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
 

@@ -1,5 +1,6 @@
 // Where methods break: the stability map, and why the thesis' scheme is wrong where it is.
 
+#include "core/reading/scene_reader.hpp"
 #include "experiments/extremes/extremes_experiment.hpp"
 #include "experiments/extremes/thesis_explanation.hpp"
 #include "experiments/named_method.hpp"

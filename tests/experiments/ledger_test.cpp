@@ -1,11 +1,12 @@
 // The balance of energy at every frame of the shipped scenes, not only at the end of a run.
 
+#include "core/reading/scene_reader.hpp"
 #include "experiments/metrics/metrics.hpp"
-#include "experiments/registry.hpp"
-#include "experiments/scene_library.hpp"
-#include "experiments/simulation.hpp"
+#include "simulation/registry.hpp"
+#include "simulation/scene_library.hpp"
+#include "simulation/simulate.hpp"
 #include "tests/catch.hpp"
-#include "tests/experiments/ledger_check.hpp"
+#include "tests/simulation/ledger_check.hpp"
 
 #include <string>
 

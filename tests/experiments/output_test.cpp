@@ -2,7 +2,7 @@
 
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
-#include "tests/experiments/scenes.hpp"
+#include "tests/simulation/scenes.hpp"
 
 #include <algorithm>
 #include <string>

@@ -1,10 +1,11 @@
 // vrphysicsapp in the thesis' own format: both schemes tell ch. 8.1, and the search finds such
 // worlds.
 
+#include "core/reading/scene_reader.hpp"
 #include "core/scene.hpp"
 #include "experiments/physworld/story.hpp"
-#include "experiments/scene_library.hpp"
-#include "experiments/simulation.hpp"
+#include "simulation/scene_library.hpp"
+#include "simulation/simulate.hpp"
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
 

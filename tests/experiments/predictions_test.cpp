@@ -1,10 +1,11 @@
 // What the reading of the thesis predicts, each prediction as a test (9 to 11 are about boxes and
 // counting, and are tested where boxes are). Runs are the quick sizes of the experiments.
 
+#include "core/reading/scene_reader.hpp"
 #include "experiments/thesis/errata_runs.hpp"
 #include "experiments/thesis/phase_runs.hpp"
 #include "tests/catch.hpp"
-#include "tests/experiments/ledger_check.hpp"
+#include "tests/simulation/ledger_check.hpp"
 
 #include <fmt/format.h>
 

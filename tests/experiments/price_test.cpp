@@ -1,9 +1,10 @@
 // What accuracy costs: tradeoff, recommend, savings.
 
 #include "core/exact_solution.hpp"
+#include "core/reading/scene_reader.hpp"
 #include "experiments/ablation/ablation_experiment.hpp"
-#include "experiments/scene_library.hpp"
 #include "experiments/tradeoff/recommend.hpp"
+#include "simulation/scene_library.hpp"
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
 

@@ -1,11 +1,12 @@
 // The four choices are independent: every scheme with every integrator, detector and impact law on
 // every shipped scene runs, or is refused with a reason.
 
-#include "experiments/metrics/run_metrics.hpp"
+#include "core/reading/scene_reader.hpp"
 #include "experiments/parallel_for.hpp"
-#include "experiments/registry.hpp"
-#include "experiments/scene_library.hpp"
-#include "experiments/simulation.hpp"
+#include "simulation/registry.hpp"
+#include "simulation/run_metrics.hpp"
+#include "simulation/scene_library.hpp"
+#include "simulation/simulate.hpp"
 #include "tests/catch.hpp"
 
 #include <array>

@@ -1,10 +1,11 @@
 // Recorded rallies: the same seed the same bits, files that read back, and what a rally shows.
 
-#include "core/document.hpp"
+#include "core/reading/document.hpp"
+#include "core/reading/track_reader.hpp"
 #include "experiments/rally/hand_path.hpp"
 #include "experiments/rally/interval.hpp"
 #include "experiments/rally/rally_run.hpp"
-#include "experiments/scene_library.hpp"
+#include "simulation/scene_library.hpp"
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
 

@@ -5,7 +5,7 @@
 #include "core/error.hpp"
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
-#include "tests/experiments/scenes.hpp"
+#include "tests/simulation/scenes.hpp"
 
 #include <filesystem>
 #include <string>

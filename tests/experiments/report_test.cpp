@@ -3,11 +3,11 @@
 #include "experiments/report/report.hpp"
 
 #include "core/error.hpp"
+#include "experiments/programs/run_experiment.hpp"
 #include "experiments/report/bibliography.hpp"
 #include "experiments/report/markdown.hpp"
 #include "experiments/report/paper.hpp"
 #include "experiments/report/report_html.hpp"
-#include "experiments/sweeps/experiment.hpp"
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
 #include "tests/locations.hpp"

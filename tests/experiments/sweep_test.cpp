@@ -5,7 +5,7 @@
 
 #include "core/error.hpp"
 #include "core/random.hpp"
-#include "experiments/sweeps/experiment_library.hpp"
+#include "experiments/data_folders.hpp"
 #include "experiments/sweeps/sweep_journal.hpp"
 #include "experiments/sweeps/sweep_plan.hpp"
 #include "tests/catch.hpp"
@@ -235,9 +235,9 @@ TEST_CASE("bad specs are named by file, line and key", "[sweep][input]") {
       {head + "[constants]\na = \"1/0\"\n", "allowed: a finite number"},
       {head + "[constants]\na = \"1+\"\n", "at character"},
       {head + "[options]\nspeed = 1\n", "options.speed: unknown key; allowed: scheme"},
-      {head + "[options]\nframe = 0\n", "frame = 0 is out of range"},
+      {head + "[options]\nframe = 0\n", "frame: \"0\" is no duration"},
       {head + "[options]\nframe = \"=x\"\n", "there is no 'x'"},
-      {head + "[options]\nframe_jitter = 0.5\n", "need a frame"},
+      {head + "[options]\nframe_jitter = 0.5\n", "frame_jitter: needs a frame"},
       {head + "[options]\nscheme = 3\n", "scheme"},
       {head + "[options]\nframe = [1]\n", "one value, not a list"},
       {head + "[[method]]\nscheme = \"orignal\"\n", "original"},

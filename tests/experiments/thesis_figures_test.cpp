@@ -1,10 +1,10 @@
 // The figures of the thesis, made again: their data, their names, their bytes.
 
 #include "core/entity.hpp"
-#include "experiments/scene_library.hpp"
-#include "experiments/sweeps/experiment_library.hpp"
-#include "experiments/sweeps/table.hpp"
+#include "experiments/data_folders.hpp"
+#include "experiments/output/table.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
+#include "simulation/scene_library.hpp"
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
 
@@ -239,9 +239,9 @@ TEST_CASE("names of shipped scenes and experiments mean the same in every folder
   (void)folder.file("overview", "not a spec");
   const std::filesystem::path before = std::filesystem::current_path();
   std::filesystem::current_path(folder.path(""));
-  CHECK(find_scene("bounce").ends_with("/bounce.toml"));
+  CHECK(kairos::find_scene("bounce").ends_with("/bounce.toml"));
   CHECK(find_experiment("overview").ends_with("/overview.toml"));
-  CHECK(find_scene("./bounce") == "./bounce");
+  CHECK(kairos::find_scene("./bounce") == "./bounce");
   std::filesystem::current_path(before);
 }
 

@@ -1,6 +1,7 @@
 // A scene as the thesis wrote it, with the models of the shipped scenes: any text is either refused
 // with a reason, or a model whose numbers are finite.
 #include "core/error.hpp"
+#include "core/reading/scene_reader.hpp"
 #include "tests/fuzz/model_check.hpp"
 #include "tests/locations.hpp"
 

@@ -2,7 +2,7 @@
 // name vertices that are there, a box around all of them, and the mass of what the mesh encloses.
 #include "core/error.hpp"
 #include "core/mass_properties.hpp"
-#include "core/off_file.hpp"
+#include "core/reading/off_file.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 #include <cmath>

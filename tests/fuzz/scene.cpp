@@ -1,5 +1,6 @@
 // A scene file: any text is either refused with a reason, or a model whose numbers are finite.
 #include "core/error.hpp"
+#include "core/reading/scene_reader.hpp"
 #include "tests/fuzz/model_check.hpp"
 
 #include <string_view>

@@ -2,6 +2,7 @@
 #include "core/drives/track.hpp"
 
 #include "core/error.hpp"
+#include "core/reading/track_reader.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "integrators/catalogue.hpp"
+#include "integrators/catalogue/catalogue.hpp"
 #include "tests/allocations.hpp"
 #include "tests/catch.hpp"
 #include "tests/integrators/problems.hpp"

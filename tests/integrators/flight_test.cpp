@@ -1,6 +1,6 @@
 #include "core/forces/drag.hpp"
 #include "core/forces/spring.hpp"
-#include "integrators/catalogue.hpp"
+#include "integrators/catalogue/catalogue.hpp"
 #include "tests/catch.hpp"
 #include "tests/integrators/problems.hpp"
 

@@ -2,7 +2,7 @@
 // shares with every method that looks for changes of sign from step to step.
 
 #include "core/forces/spring.hpp"
-#include "integrators/catalogue.hpp"
+#include "integrators/catalogue/catalogue.hpp"
 #include "tests/catch.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "integrators/catalogue.hpp"
+#include "integrators/catalogue/catalogue.hpp"
 #include "integrators/closed_form.hpp"
 #include "integrators/dormand_prince.hpp"
 #include "integrators/splitting.hpp"

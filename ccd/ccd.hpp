@@ -1,0 +1,16 @@
+#pragma once
+
+// The room `ccd`, as a consumer sees it: detectors, swept boxes, broad phases, questions about one
+// instant. `#include <kairos/ccd.hpp>`; see ccd/README.md.
+#include "ccd/all_pairs.hpp"
+#include "ccd/bisection.hpp"
+#include "ccd/certified.hpp"
+#include "ccd/conservative_advancement.hpp"
+#include "ccd/contact_patch.hpp"
+#include "ccd/dynamic_tree.hpp"
+#include "ccd/nearest_points.hpp"
+#include "ccd/pair_overlap.hpp"
+#include "ccd/sat.hpp"
+#include "ccd/step_ends.hpp"
+#include "ccd/sweep_and_prune.hpp"
+#include "ccd/swept_box.hpp"

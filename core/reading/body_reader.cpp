@@ -1,0 +1,265 @@
+#include "core/reading/body_reader.hpp"
+
+#include "core/nearest_name.hpp"
+#include "core/reading/drive_reader.hpp"
+#include "core/reading/scene_keys.hpp"
+#include "core/reading/scene_limits.hpp"
+#include "core/reading/scene_name.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+constexpr std::string_view shape_names[] = {"sphere", "box", "half-space"};
+constexpr std::string_view collision_names[] = {"square", "round"};
+
+const EntityType& read_entity_type(const TableReader& table) {
+  std::vector<std::string_view> kinds;
+  for (const EntityType& type : entity_catalogue()) {
+    kinds.push_back(type.kind);
+  }
+  const Item item = table.need("entity", "one of " + listed(kinds));
+  return entity_catalogue()[item.choice(kinds)];
+}
+
+std::shared_ptr<const Entity> make_entity(const TableReader& table, const EntityType& type) {
+  std::vector<double> values;
+  for (const EntityKey& key : type.keys) {
+    const auto item = table.find(key.key);
+    const Range range{.lowest = key.lowest, .highest = key.highest, .unit = key.unit};
+    values.push_back(item ? item->number(range) : key.default_value);
+  }
+  return type.make(values);
+}
+
+/// The kind of shape: what is said, or what the size that is given implies.
+std::string_view shape_kind(const TableReader& table) {
+  if (const auto item = table.find("shape")) {
+    return shape_names[item->choice(shape_names)];
+  }
+  if (table.has("radius") == table.has("half_extents")) {
+    table.fail("shape", table.has("radius")
+                            ? "cannot be told: both radius and half_extents are given"
+                            : "is missing; needed: shape, or radius (a sphere), or half_extents "
+                              "(a box)");
+  }
+  return table.has("radius") ? "sphere" : "box";
+}
+
+Shape read_shape(const TableReader& table) {
+  const std::string_view kind = shape_kind(table);
+  if (kind != "sphere" && table.has("radius")) {
+    table.fail("radius", fmt::format("a {} has no radius", kind));
+  }
+  if (kind != "box" && table.has("half_extents")) {
+    table.fail("half_extents", fmt::format("a {} has no half_extents", kind));
+  }
+  if (kind == "sphere") {
+    return Sphere{table.need("radius", limits::extent.text()).number(limits::extent)};
+  }
+  if (kind == "box") {
+    return Box{table.need("half_extents", "an array of 3 numbers").vector(limits::extent)};
+  }
+  return HalfSpace{};
+}
+
+Quaternion from_components(const Item& item) {
+  const std::vector<double> q = item.numbers(4, limits::component);
+  const Eigen::Vector4d c(q[0], q[1], q[2], q[3]);
+  const double norm = c.stableNorm();
+  if (!(std::abs(norm - 1.0) <= limits::quaternion_norm)) {
+    item.fail(
+        fmt::format("has norm {}; allowed: a unit quaternion [w, x, y, z], norm within {} "
+                    "of 1",
+                    norm, limits::quaternion_norm));
+  }
+  return Quaternion(c[0], c[1], c[2], c[3]).normalized();
+}
+
+Vector3 direction(const Item& item, const Vector3& v) {
+  const double norm = v.stableNorm();
+  if (!(norm > 0.0)) {
+    item.fail("has length 0; allowed: any other direction");
+  }
+  // One that is unit to its roundings stays as it was written.
+  const bool unit = std::abs(v.squaredNorm() - 1.0) <= 4.0 * std::numeric_limits<double>::epsilon();
+  return unit ? v : (v / norm).normalized();
+}
+
+Quaternion read_orientation(const TableReader& table) {
+  const auto components = table.find("orientation");
+  const auto turn = table.find("axis_angle");
+  if (components && turn) {
+    turn->fail("orientation is given too; allowed: one of orientation and axis_angle");
+  }
+  if (components) {
+    return from_components(*components);
+  }
+  if (turn) {
+    const std::vector<double> x = turn->numbers(4, limits::component);
+    const Vector3 axis = direction(*turn, {x[0], x[1], x[2]});
+    return rotate(x[3] * axis, Quaternion::Identity()).normalized();
+  }
+  return Quaternion::Identity();
+}
+
+/// `normal` is told in the world, as it is at the start, and kept in the body. A half-space has no
+/// other shape than its normal.
+void read_normal(const TableReader& table, Body& body) {
+  const auto item = table.find("normal");
+  if (!item) {
+    return;
+  }
+  if (!body.entity->stationary()) {
+    item->fail(fmt::format("a {} has no reflecting face; only walls and conveyors take a normal",
+                           body.entity->kind()));
+  }
+  const Vector3 normal = direction(*item, item->vector(limits::component));
+  body.normal_B = body.initial.pose.orientation.conjugate() * normal;
+  if (auto* half_space = std::get_if<HalfSpace>(&body.shape)) {
+    if (table.has("orientation") || table.has("axis_angle")) {
+      item->fail("an orientation is given too; allowed: one of them for a half-space");
+    }
+    half_space->normal_B = normal;
+  }
+}
+
+Bounds read_bounds(const TableReader& table, const Body& body, Bounds fallback) {
+  const auto item = table.find("bounds");
+  const Bounds bounds = item ? static_cast<Bounds>(item->choice(bounds_names)) : fallback;
+  if (!std::holds_alternative<HalfSpace>(body.shape)) {
+    return bounds;
+  }
+  if (item && bounds == Bounds::obb) {
+    item->fail("a half-space has no box around it; allowed: \"shape\"");
+  }
+  return Bounds::shape;
+}
+
+void read_inertia(const TableReader& table, Body& body) {
+  const auto item = table.find("inertia");
+  if (!item) {
+    body.inertia = solid_inertia(body.shape, body.mass);
+    return;
+  }
+  body.inertia = item->vector(limits::inertia);
+  const Vector3& I = body.inertia;
+  // Physical: no principal moment exceeds the sum of the others; roundoff of printed digits aside.
+  if (2.0 * I.maxCoeff() > I.sum() * (1.0 + 1e-9)) {
+    item->fail("one moment exceeds the sum of the other two; allowed: what a rigid body can have");
+  }
+}
+
+/// A key that this kind of body does not take.
+void refuse(const TableReader& table, std::string_view key, const std::string& reason) {
+  if (table.has(key)) {
+    table.fail(key, reason);
+  }
+}
+
+void read_free(const TableReader& table, Body& body) {
+  if (std::holds_alternative<HalfSpace>(body.shape)) {
+    table.fail("shape", fmt::format("a half-space cannot move freely: a {} needs a sphere or a box",
+                                    body.entity->kind()));
+  }
+  refuse(table, "drive",
+         fmt::format("a {} moves freely; only fixed and driven bodies take a drive",
+                     body.entity->kind()));
+  body.mass = table.need("mass", limits::mass.text()).number(limits::mass);
+  read_inertia(table, body);
+  if (const auto velocity = table.find("velocity")) {
+    body.initial.twist.linear = velocity->vector(limits::velocity);
+  }
+  if (const auto spin = table.find("angular_velocity")) {
+    body.initial.twist.angular = spin->vector(limits::angular_velocity);
+    if (!body.entity->rotates() && !body.initial.twist.angular.isZero(0.0)) {
+      spin->fail(fmt::format("a {} does not turn; use the entity \"body\"", body.entity->kind()));
+    }
+  }
+}
+
+void read_fixed_or_driven(const TableReader& table, Body& body, const EntityType& type,
+                          const std::string& directory) {
+  for (const std::string_view key : {"velocity", "angular_velocity"}) {
+    refuse(table, key,
+           fmt::format("a {} is not moved by forces; give it a drive", body.entity->kind()));
+  }
+  refuse(table, "inertia", fmt::format("nothing turns a {}", body.entity->kind()));
+  if (type.mobility == Mobility::driven) {
+    body.mass = table.need("mass", limits::mass.text()).number(limits::mass);
+  } else {
+    refuse(table, "mass", fmt::format("a {} has infinite mass", body.entity->kind()));
+  }
+  if (const auto drive = table.find("drive")) {
+    body.drive = read_drive(*drive, body, directory);
+    const Motion motion = body.drive->motion(Instant{}, 1.0);
+    body.initial = {motion.pose(0.0), motion.twist(0.0)};
+  } else if (type.mobility == Mobility::driven) {
+    table.fail("drive", fmt::format("is missing; a {} needs to be driven", body.entity->kind()));
+  }
+}
+
+/// What a hand holds, and whether its drive can tell when.
+void read_hand(const TableReader& table, Body& body) {
+  if (!body.entity->is_hand()) {
+    return refuse(table, "holds",
+                  fmt::format("a {} has no fist; only hands hold something", body.entity->kind()));
+  }
+  body.holds = table.need("holds", "the name of the body that the closed fist holds").text();
+  if (!body.drive->has_gestures()) {
+    table.fail("drive", "tells no gestures; needed: a track with the column gesture");
+  }
+}
+
+void refuse_unknown_keys(const TableReader& table, const EntityType& type) {
+  std::vector<std::string_view> known = scene_keys_of("body");
+  for (const EntityKey& key : type.keys) {
+    known.push_back(key.key);
+  }
+  table.refuse_unknown(known);
+}
+
+}  // namespace
+
+Body read_body(const Item& item, const BodyDefaults& defaults) {
+  const TableReader table(item);
+  Body body;
+  body.line = item.value().line;
+  body.name = read_name(table.need("name", "a name, unique in the scene"));
+  const EntityType& type = read_entity_type(table);
+  refuse_unknown_keys(table, type);
+  body.entity = make_entity(table, type);
+  body.shape = read_shape(table);
+  body.bounds = read_bounds(table, body, defaults.bounds);
+  if (const auto position = table.find("position")) {
+    body.initial.pose.position = position->vector(limits::position);
+  }
+  body.initial.pose.orientation = read_orientation(table);
+  read_normal(table, body);
+  const auto number = [&table](std::string_view key, const Range& range, double fallback) {
+    const auto value = table.find(key);
+    return value ? value->number(range) : fallback;
+  };
+  body.restitution = number("restitution", limits::restitution, body.restitution);
+  body.G = number("G", limits::G, defaults.G);
+  body.scale = number("scale", limits::scale, body.scale);
+  if (const auto collision = table.find("collision_type")) {
+    body.collision_type = static_cast<CollisionType>(collision->choice(collision_names));
+  }
+  if (type.mobility == Mobility::free) {
+    read_free(table, body);
+  } else {
+    read_fixed_or_driven(table, body, type, defaults.directory);
+  }
+  read_hand(table, body);
+  return body;
+}
+
+}  // namespace core
+}  // namespace kairos

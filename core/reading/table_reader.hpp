@@ -1,0 +1,80 @@
+#pragma once
+
+#include "core/pose.hpp"
+#include "core/reading/document.hpp"
+#include "core/reading/frame_reader.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+
+/// The numbers that a key takes.
+struct Range {
+  double lowest = 0.0;
+  double highest = 0.0;
+  bool above = false;          ///< `lowest` itself is not allowed
+  std::string_view unit = "";  ///< for messages
+
+  [[nodiscard]] bool contains(double x) const {
+    return (above ? x > lowest : x >= lowest) && x <= highest;
+  }
+  /// "a number from 0 to 1 (m)".
+  [[nodiscard]] std::string text() const;
+};
+
+/// A value of a document and the path of its key: typed access whose every complaint is an
+/// `InputError` with file, line, key, what is wrong and what is allowed.
+class Item {
+ public:
+  Item(const Value& value, std::string path) : value_(&value), path_(std::move(path)) {}
+
+  [[nodiscard]] const Value& value() const { return *value_; }
+  [[nodiscard]] const std::string& path() const { return path_; }
+  [[noreturn]] void fail(const std::string& reason) const;
+
+  [[nodiscard]] double number(const Range& range) const;
+  [[nodiscard]] std::int64_t whole_number(std::int64_t lowest, std::int64_t highest) const;
+  [[nodiscard]] bool flag() const;
+  [[nodiscard]] const std::string& text() const;
+  /// Index of the text among `names`.
+  [[nodiscard]] std::size_t choice(std::span<const std::string_view> names) const;
+  [[nodiscard]] std::vector<double> numbers(std::size_t count, const Range& range) const;
+  [[nodiscard]] Vector3 vector(const Range& range) const;
+  /// Seconds: a number, or a text such as "1/60" or "16ms" (see `parse_duration`).
+  [[nodiscard]] double duration() const;
+  [[nodiscard]] const Array& array() const;
+
+ private:
+  const Value* value_;
+  std::string path_;
+};
+
+/// A table of a document, of which every key must be known.
+class TableReader {
+ public:
+  /// Throws if `item` is no table.
+  explicit TableReader(Item item);
+
+  [[nodiscard]] const Item& item() const { return item_; }
+  /// Refuses every key that is not in `known`, and suggests the nearest.
+  void refuse_unknown(std::span<const std::string_view> known) const;
+  [[nodiscard]] bool has(std::string_view key) const { return table_->find(key) != nullptr; }
+  [[nodiscard]] std::optional<Item> find(std::string_view key) const;
+  /// The value of a key that must be there; `what` says what it is, for the message.
+  [[nodiscard]] Item need(std::string_view key, std::string_view what) const;
+  /// Complains about the table itself, or about one of its keys if it is there.
+  [[noreturn]] void fail(std::string_view key, const std::string& reason) const;
+
+ private:
+  Item item_;
+  const Table* table_;
+};
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,320 @@
+#include "core/schemes/event/event_contacts.hpp"
+
+#include "core/archive.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+/// Hops below this part of the extent may be those of a gap that closes.
+constexpr double small_hop = 1e-3;
+/// Hops below this part of the extent are taken for rest where restitution is below 1.
+constexpr double small_rest = 1e-10;
+/// `contact_begins` of a contact that has been told.
+constexpr Instant told{-1.0, 0.0};
+
+}  // namespace
+
+EventContacts::EventContacts(EventRun& run, EventMotions& motions, EventPredictor& predictor)
+    : run_(run), motions_(motions), predictor_(predictor), bodies_(run.model.size()) {}
+
+// --- Impacts -----------------------------------------------------------------------------------
+
+void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double patience, bool decided) {
+  for (const BodyIndex i : {a, b}) {
+    if (run_.model.is_free(i)) {
+      motions_.book(i, t);
+    }
+    if (run_.model.mobility(i) != Mobility::fixed) {
+      motions_.bring(i, t);
+    }
+  }
+  Event event{.time = t, .kind = EventKind::impact, .a = a, .b = b};
+  event.contact = contact_at(a, b, t, patience);
+  const double approach = normal_velocity(event.contact, motions_.now(a), motions_.now(b));
+  if (!decided && approach >= 0.0 && patience > 0.0) {
+    return look_again(a, b, t, patience);
+  }
+  Vector3 unused_a = Vector3::Zero();  // solids that push (none does) would need fields
+  Vector3 unused_b = Vector3::Zero();
+  const ImpactEnergy energy =
+      run_.exchange(event, motions_.now(a), motions_.now(b), unused_a, unused_b);
+  run_.ledger.add(EnergyLine::restitution_loss, energy.restitution_loss);
+  run_.ledger.add(EnergyLine::driven_work, energy.driven_work);
+  run_.ledger.add(EnergyLine::conveyor_and_hand, energy.conveyor_and_hand);
+  const double rebound = normal_velocity(event.contact, event.after_a, event.after_b);
+  const double scale =
+      std::abs(approach) + event.after_a.twist.linear.norm() + event.after_b.twist.linear.norm();
+  if (rebound < -16.0 * epsilon * scale) {  // roundoff of a product and a few sums
+    depart(a, b, t);
+    return run_.stop(
+        t, fmt::format("still approaching: the impact law '{}' leaves {} approaching each "
+                       "other at {} m/s",
+                       run_.law.info().name, run_.names(a, b), -rebound));
+  }
+  land(a, b, event.contact, t);
+}
+
+/// Where the two touch at t: the centroid of the contact patch; where that does not approach, the
+/// nearest points (one corner of several that are within tolerance).
+Contact EventContacts::contact_at(BodyIndex a, BodyIndex b, Instant t, double patience) const {
+  const BodyState& state_a = motions_.now(a);
+  const BodyState& state_b = motions_.now(b);
+  const Overlap o =
+      run_.detector.overlap(run_.model.shape(a), state_a.pose, run_.model.shape(b), state_b.pose);
+  const Contact patch{o.point, o.normal, o.gap};
+  if (normal_velocity(patch, state_a, state_b) < 0.0 || patience <= 0.0) {
+    return patch;
+  }
+  const TimeOfImpact toi = run_.detector.time_of_impact(motions_.moving(a), motions_.moving(b),
+                                                        {t, patience}, run_.options.toi_tolerance);
+  const Contact nearest{0.5 * (toi.witness_a + toi.witness_b), toi.normal, toi.gap};
+  const bool found = toi.status == ToiStatus::impact || toi.status == ToiStatus::undecided;
+  return found && normal_velocity(nearest, state_a, state_b) < 0.0 ? nearest : patch;
+}
+
+/// A pair within tolerance that does not approach is asked about again where the answer ends.
+/// Answers that hardly get on, one after the other, would be asked for without end.
+void EventContacts::look_again(BodyIndex a, BodyIndex b, Instant t, double patience) {
+  const double window = std::min({motions_.of(a).duration, motions_.of(b).duration, run_.epoch});
+  const BodyIndex mover = run_.model.is_free(a) ? a : b;
+  if (bodies_[mover].history.stalls(patience / window)) {
+    return run_.stop(t, fmt::format("accumulation: whether {} touch is undecided again and again, "
+                                    "and time does not go on",
+                                    run_.names(a, b)));
+  }
+  run_.agenda.push(t + patience, Due::recheck, a, b);
+}
+
+/// After an impact: rest where the hop is too small to tell, stop where hops accumulate without a
+/// support, fly on otherwise.
+void EventContacts::land(BodyIndex a, BodyIndex b, const Contact& contact, Instant t) {
+  const double e = run_.model.body(a).restitution * run_.model.body(b).restitution;
+  const double tolerance = rest_tolerance(a, b, e);
+  for (const BodyIndex ball : {a, b}) {
+    const BodyIndex surface = ball == a ? b : a;
+    if (!run_.model.is_free(ball) || run_.model.is_free(surface)) {
+      continue;
+    }
+    const Motion& under = motions_.of(surface);
+    const double s = std::min(t - under.start, under.duration);
+    const Vector3 normal = ball == b ? contact.normal : Vector3(-contact.normal);
+    const auto support =
+        find_support(run_.model, ball, motions_.now(ball).pose.position, surface, under, s, normal);
+    if (!support) {
+      continue;
+    }
+    const double rebound = leaving_speed(ball, *support, t);
+    const double pressing = motions_.pressing(ball, *support, t);
+    if (pressing > 0.0 && rebound * rebound <= 2.0 * pressing * tolerance) {
+      return settle(ball, *support, pressing, e, t);
+    }
+  }
+  for (const BodyIndex i : {a, b}) {
+    if (run_.model.is_free(i) && accumulates(i, tolerance, t)) {
+      depart(a, b, t);  // what the last frame shows, and the ledger has booked
+      return run_.stop(t, fmt::format("accumulation: impacts of {} follow each other without end, "
+                                      "and that is not a ball on a surface",
+                                      run_.names(a, b)));
+    }
+  }
+  relaunch(a, b, t);
+}
+
+/// How small a hop is taken for rest, m: with e < 1 the hops that would follow are summed up, so
+/// the height only has to be far below anything measured; otherwise only what the coordinates
+/// cannot resolve.
+double EventContacts::rest_tolerance(BodyIndex a, BodyIndex b, double e) const {
+  const double extent =
+      std::min(smallest_extent(run_.model.shape(a)), smallest_extent(run_.model.shape(b)));
+  const double coordinate = std::max(motions_.now(a).pose.position.cwiseAbs().maxCoeff(),
+                                     motions_.now(b).pose.position.cwiseAbs().maxCoeff());
+  return (e < 1.0 ? small_rest * extent : 0.0) + 4.0 * epsilon * coordinate;
+}
+
+bool EventContacts::accumulates(BodyIndex i, double tolerance, Instant t) {
+  const Shape& shape = run_.model.shape(i);
+  const Twist& twist = motions_.now(i).twist;
+  const double speed = twist.linear.norm() + twist.angular.norm() * bounding_radius(shape);
+  ImpactHistory& history = bodies_[i].history;
+  return history.accelerates(small_hop * smallest_extent(shape), t) ||
+         history.creeps(speed, tolerance, t);
+}
+
+bool EventContacts::in_one_island(BodyIndex a, BodyIndex b) const {
+  return run_.model.is_free(a) && run_.model.is_free(b) &&
+         run_.model.island_of(a) == run_.model.island_of(b);
+}
+
+/// The islands of the two fly on from `now`, where an impact has put them.
+void EventContacts::depart(BodyIndex a, BodyIndex b, Instant t) {
+  for (const BodyIndex i : {a, b}) {
+    if (run_.model.is_free(i)) {
+      for (const BodyIndex k : motions_.island(i)) {
+        if (k != a && k != b) {
+          motions_.bring(k, t);
+        }
+      }
+    }
+  }
+  for (const BodyIndex i : {a, b}) {
+    if (!run_.model.is_free(i) || (i == b && in_one_island(a, b))) {
+      continue;
+    }
+    if (motions_.support(i)) {
+      resume_support(i, t);
+    }
+    motions_.launch(i, t);
+  }
+}
+
+void EventContacts::relaunch(BodyIndex a, BodyIndex b, Instant t) {
+  depart(a, b, t);
+  for (const BodyIndex i : {a, b}) {
+    if (!run_.model.is_free(i) || (i == b && in_one_island(a, b))) {
+      continue;
+    }
+    for (const BodyIndex k : motions_.island(i)) {
+      // The pair itself is predicted once.
+      predictor_.predict(k, t, i == b && run_.model.is_free(a) ? a : k);
+    }
+  }
+}
+
+// --- Supports ----------------------------------------------------------------------------------
+
+/// At which the ball leaves the surface, m/s.
+double EventContacts::leaving_speed(BodyIndex ball, const Support& support, Instant t) const {
+  const Motion& under = motions_.of(support.surface);
+  const double s = std::min(t - under.start, under.duration);
+  return support.normal.dot(motions_.now(ball).twist.linear - under.twist(s).linear);
+}
+
+/// The ball takes the velocity of the surface along its normal.
+void EventContacts::follow(BodyIndex ball, const Support& support, Instant t) {
+  const double away = leaving_speed(ball, support, t);
+  const Motion& under = motions_.of(support.surface);
+  const double ground =
+      support.normal.dot(under.twist(std::min(t - under.start, under.duration)).linear);
+  const double m = run_.model.inertia(ball).mass;
+  run_.ledger.add(EnergyLine::restitution_loss, -0.5 * m * away * away);
+  run_.ledger.add(EnergyLine::driven_work, -m * away * ground);
+  Vector3& v = motions_.now(ball).twist.linear;
+  v -= support.normal * (support.normal.dot(v) - ground);
+}
+
+/// The ball stays on the surface from now on. The hops it would still make, each e times as long as
+/// the one before, add up to 2 u / (a (1 - e)): that is when contact begins.
+void EventContacts::settle(BodyIndex ball, const Support& support, double pressing, double e,
+                           Instant t) {
+  if (motions_.support(ball)) {
+    end_contact(ball, t);  // one surface at a time
+  }
+  const double rebound = std::max(leaving_speed(ball, support, t), 0.0);
+  const double still = e < 1.0 ? 2.0 * rebound / (pressing * (1.0 - e)) : 0.0;
+  follow(ball, support, t);
+  motions_.set_support(ball, support);
+  motions_.launch(ball, t);
+  auto& [history, settled, contact_begins] = bodies_[ball];
+  const bool never_before = settled == Instant::never();
+  if (history.stalls(never_before ? 1.0 : (t - settled) / run_.epoch)) {
+    return run_.stop(t, fmt::format("accumulation: {} leave and meet each other again and again, "
+                                    "and time does not go on",
+                                    run_.names(ball, support.surface)));
+  }
+  settled = t;
+  contact_begins = t + still;
+  if (contact_begins < Instant::never()) {
+    run_.agenda.push(contact_begins, Due::contact_begins, ball, support.surface);
+  }
+  predictor_.predict(ball, t);
+}
+
+/// A supported ball was pushed: it stays if the push is along the surface.
+void EventContacts::resume_support(BodyIndex i, Instant t) {
+  const Support support = *motions_.support(i);
+  const double away = leaving_speed(i, support, t);
+  const double pressing = motions_.pressing(i, support, t);
+  const double tolerance = rest_tolerance(i, support.surface, 0.0);
+  if (pressing > 0.0 && away * away <= 2.0 * pressing * tolerance) {
+    return follow(i, support, t);
+  }
+  end_contact(i, t);
+}
+
+void EventContacts::begin_contact(BodyIndex i, Instant t) {
+  Instant& begins = bodies_[i].contact_begins;
+  if (motions_.support(i) && begins == t) {
+    run_.time = t;
+    begins = told;
+    motions_.note(EventKind::contact_begins, i, motions_.support(i)->surface, t);
+  }
+}
+
+void EventContacts::end_contact(BodyIndex i, Instant t) {
+  Instant& began = bodies_[i].contact_begins;
+  const BodyIndex surface = motions_.support(i)->surface;
+  motions_.set_support(i, std::nullopt);
+  if (began < t) {  // otherwise it was still hopping
+    motions_.note(EventKind::contact_ends, i, surface, t);
+  }
+  began = Instant::never();
+}
+
+void EventContacts::leave_support(BodyIndex i, Instant t) {
+  motions_.book(i, t);
+  motions_.bring(i, t);
+  end_contact(i, t);
+  motions_.launch(i, t);
+  predictor_.predict(i, t);
+}
+
+void EventContacts::carry_riders(BodyIndex surface, Instant t) {
+  for (const BodyIndex i : run_.agenda.by_name()) {
+    if (motions_.is_supported_by(i, surface)) {
+      motions_.book(i, t);
+      motions_.bring(i, t);
+      resume_support(i, t);
+      motions_.launch(i, t);
+      predictor_.predict(i, t);
+    }
+  }
+}
+
+// --- Fields ------------------------------------------------------------------------------------
+
+void EventContacts::cross_field(BodyIndex a, BodyIndex b, Instant t, bool entering) {
+  const auto [field, body] = run_.model.is_field(a) ? std::pair{a, b} : std::pair{b, a};
+  motions_.book(body, t);
+  for (const BodyIndex k : motions_.island(body)) {
+    motions_.bring(k, t);
+  }
+  if (entering) {
+    motions_.fields(body).push_back(field);
+  } else {
+    std::erase(motions_.fields(body), field);
+  }
+  motions_.note(entering ? EventKind::field_entered : EventKind::field_left, field, body, t);
+  if (motions_.support(body)) {
+    resume_support(body, t);
+  }
+  motions_.launch(body, t);
+  for (const BodyIndex k : motions_.island(body)) {
+    predictor_.predict(k, t);
+  }
+}
+
+void EventContacts::Touching::persist(Archive& archive) {
+  archive(history, settled, contact_begins);
+}
+void EventContacts::persist(Archive& archive) { archive(bodies_); }
+
+}  // namespace core
+}  // namespace kairos

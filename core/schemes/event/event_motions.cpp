@@ -1,0 +1,364 @@
+#include "core/schemes/event/event_motions.hpp"
+
+#include "core/archive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace kairos {
+inline namespace core {
+
+EventMotions::EventMotions(EventRun& run, const Method& method)
+    : run_(run),
+      bodies_(run.model.size()),
+      now_(run.model.initial_state()),
+      booked_(now_),
+      field_forces_(run.model.size(), Vector3::Zero()) {
+  for (std::size_t k = 0; k < run.model.islands().size(); ++k) {
+    Flow flow{.island = run.model.islands()[k], .stepper = method.stepper(run.model, k)};
+    flow.exact = flow.stepper->info().order == 0;
+    flow.states.resize(flow.island.bodies.size());
+    flow.motions.resize(flow.island.bodies.size());
+    flows_.push_back(std::move(flow));
+  }
+  run_.account.open(run_.time, now_);
+}
+
+void EventMotions::begin() {
+  for (const BodyIndex i : run_.agenda.by_name()) {
+    switch (run_.model.mobility(i)) {
+      case Mobility::fixed:
+        bodies_[i].motion = Motion::at_rest(run_.time, now_[i].pose);
+        break;
+      case Mobility::driven:
+        drive(i, run_.time);
+        break;
+      case Mobility::free:
+        break;
+    }
+  }
+  for (const BodyIndex i : run_.agenda.by_name()) {
+    if (run_.model.is_free(i) && island(i).front() == i) {
+      Flow& flow = flow_of(i);
+      set_forces(flow);
+      for (std::size_t k = 0; k < flow.states.size(); ++k) {
+        flow.states[k] = now_[flow.island.bodies[k]];
+      }
+      flow.stepper->start(flow.island, run_.time, flow.states);
+      next_segment(flow, run_.time);
+    }
+  }
+}
+
+BodyState EventMotions::at(BodyIndex i, Instant t) const {
+  const Motion& motion = bodies_[i].motion;
+  const double s = std::min(t - motion.start, motion.duration);
+  return {motion.pose(s), motion.twist(s)};
+}
+
+void EventMotions::bring_others(BodyIndex i, Instant t) {
+  for (const BodyIndex k : island(i)) {
+    if (k != i) {
+      bring(k, t);
+    }
+  }
+}
+
+// --- Motions -----------------------------------------------------------------------------------
+
+void EventMotions::launch(BodyIndex i, Instant t) {
+  Flow& flow = flow_of(i);
+  set_forces(flow);
+  for (std::size_t k = 0; k < flow.states.size(); ++k) {
+    flow.states[k] = now_[flow.island.bodies[k]];
+  }
+  flow.stepper->restart(flow.island, t, flow.states);
+  next_segment(flow, t);
+}
+
+void EventMotions::go_on(BodyIndex i, Instant t) {
+  if (run_.model.mobility(i) == Mobility::driven) {
+    return drive(i, t);
+  }
+  book(i, t);
+  if (bodies_[i].support) {
+    bring(i, t);  // where its surface took it, which the stepper does not know
+    launch(i, t);
+  } else {
+    next_segment(flow_of(i), t);
+  }
+}
+
+/// One stepper step, as motions.
+void EventMotions::next_segment(Flow& flow, Instant t) {
+  for (std::size_t k = 0; k < flow.states.size(); ++k) {
+    booked_[flow.island.bodies[k]] = flow.states[k];
+  }
+  flow.booked = t;
+  if (run_.options.roundoff) {
+    flow.launched = flow.states;
+    flow.roundoff = 0.0;
+  }
+  const double longest = run_.options.step > 0.0 ? run_.options.step : run_.mean_frame;
+  // A closed form has no end of its own.
+  const double h =
+      flow.exact ? std::numeric_limits<double>::infinity() : std::min(run_.epoch, longest);
+  ++run_.cost.steps;
+  const StepResult step = flow.stepper->step(flow.island, t, h, flow.states);
+  if (!step.ok || !(step.advanced > 0.0)) {
+    run_.stop(t, "integrator: " + std::string(step.reason));
+    return;
+  }
+  flow.stepper->dense_output(flow.motions);
+  for (std::size_t k = 0; k < flow.motions.size(); ++k) {
+    set_motion(flow.island.bodies[k], flow.motions[k]);
+  }
+  hold(flow, t);
+  const BodyIndex first = flow.island.bodies.front();
+  if (std::isfinite(step.advanced)) {
+    run_.agenda.push(t + step.advanced, Due::segment_end, first, first);
+  }
+}
+
+/// The next motion of a driven body.
+void EventMotions::drive(BodyIndex i, Instant t) {
+  set_motion(i, run_.model.body(i).drive->motion(t, run_.epoch));
+  bring(i, t);
+  run_.agenda.push(of(i).end(), Due::segment_end, i, i);
+}
+
+void EventMotions::set_motion(BodyIndex i, const Motion& motion) {
+  bodies_[i].motion = motion;
+  run_.agenda.renew(i);
+  if (run_.wants_motions) {
+    run_.recorder.motion(i, motion);
+  }
+}
+
+/// A supported ball rides on its surface until its face ends or draws away.
+void EventMotions::hold(Flow& flow, Instant t) {
+  const BodyIndex i = flow.island.bodies.front();
+  const std::optional<Support>& support = bodies_[i].support;
+  if (!support) {
+    return;
+  }
+  Motion& motion = bodies_[i].motion;
+  const Vector3& n = support->normal;
+  const BodyIndex surface = support->surface;
+  const double mass = flow.island.inertia[0].mass;
+  const Motion under = of(surface).shifted(t - of(surface).start);
+  const double left = std::min({run_.epoch_end - t, under.duration, motion.duration});
+  double until = face_exit_time(run_.model.shape(surface), under, motion, n, left);
+  if (run_.model.mobility(surface) == Mobility::driven) {
+    until = std::min(until, lift_off_time(under, n, mass, net_force(i)));
+    motion = ride(motion, under, n);
+    if (run_.wants_motions) {
+      run_.recorder.motion(i, motion);
+    }
+  }
+  if (!run_.model.islands()[run_.model.island_of(i)].forces.empty()) {
+    const auto contact_force = [&](double s) {
+      const BodyState state{motion.pose(s), motion.twist(s)};
+      return n.dot(mass * under.acceleration(s) - acting_force(i, t + s, state));
+    };
+    until = std::min(until, release_time(contact_force, std::min(until, left)));
+  }
+  if (t + until < run_.epoch_end) {
+    run_.agenda.push(t + until, Due::support_ends, i, surface);
+  }
+}
+
+void EventMotions::carry(BodyIndex i, BodyIndex hand, const BodyState& state, Instant t) {
+  Flow& flow = flow_of(i);
+  now_[i] = state;
+  run_.account.carried(flow.island, t, booked_, now_);
+  booked_[i] = state;
+  flow.booked = t;
+  flow.carried = true;
+  Motion motion = of(hand).shifted(t - of(hand).start);
+  motion.rotation = RotationKind::fixed;
+  motion.quaternion = Motion::at_rest(t, state.pose).quaternion;
+  motion.angular_velocity = {};
+  set_motion(i, motion);
+}
+
+// --- Forces ------------------------------------------------------------------------------------
+
+bool EventMotions::is_in_field(BodyIndex i, BodyIndex field) const {
+  const std::vector<BodyIndex>& fields = bodies_[i].fields;
+  return std::find(fields.begin(), fields.end(), field) != fields.end();
+}
+
+Vector3 EventMotions::field_forces_at(BodyIndex i) const {
+  Vector3 sum = Vector3::Zero();
+  for (const BodyIndex field : bodies_[i].fields) {
+    sum += field_force(run_.model, field, now_[field], i);
+  }
+  return sum;
+}
+
+/// What is constant over a segment, N.
+Vector3 EventMotions::net_force(BodyIndex i) const {
+  return run_.model.gravity_force(i) + field_forces_[i];
+}
+
+/// That and what depends on the state, of a body that is alone in its island, N.
+Vector3 EventMotions::acting_force(BodyIndex i, Instant t, const BodyState& state) const {
+  Wrench wrench{run_.model.gravity_force(i) + field_forces_at(i), Vector3::Zero()};
+  for (const Force* force : run_.model.islands()[run_.model.island_of(i)].forces) {
+    force->add(t, {&state, 1}, {&wrench, 1});
+  }
+  return wrench.force;
+}
+
+double EventMotions::pressing(BodyIndex ball, const Support& support, Instant t) const {
+  const Motion& under = of(support.surface);
+  const double s = std::min(t - under.start, under.duration);
+  return support.normal.dot(under.acceleration(s) -
+                            acting_force(ball, t, now_[ball]) / run_.model.inertia(ball).mass);
+}
+
+void EventMotions::set_forces(Flow& flow) {
+  flow.island.forces =
+      run_.model.islands()[run_.model.island_of(flow.island.bodies.front())].forces;
+  flow.support.reset();
+  for (std::size_t k = 0; k < flow.island.bodies.size(); ++k) {
+    const BodyIndex i = flow.island.bodies[k];
+    field_forces_[i] = field_forces_at(i);
+    Vector3 force = net_force(i);
+    if (const auto& support = bodies_[i].support) {
+      force -= support->normal * support->normal.dot(force);
+      if (!flow.island.forces.empty()) {
+        flow.support = std::make_unique<SupportForce>(support->normal);
+        flow.island.forces.push_back(flow.support.get());
+      }
+    }
+    flow.island.constant_force[k] = force;
+  }
+}
+
+// --- Ledger ------------------------------------------------------------------------------------
+
+void EventMotions::book_all(Instant t) {
+  for (Flow& flow : flows_) {
+    book(flow, t);
+  }
+}
+
+void EventMotions::book(Flow& flow, Instant t) {
+  const double duration = t - flow.booked;
+  if (!(duration > 0.0)) {
+    return;
+  }
+  const BodyIndex first = flow.island.bodies.front();
+  if (flow.carried) {
+    bring(first, t);
+    run_.account.carried(flow.island, t, booked_, now_);
+    booked_[first] = now_[first];
+    flow.booked = t;
+    return;
+  }
+  // At its end a segment is where the stepper left it, which its motion tells up to roundoff.
+  const bool whole = !(of(first).end() - t > 0.0) && !bodies_[first].support;
+  for (std::size_t k = 0; k < flow.states.size(); ++k) {
+    const BodyIndex i = flow.island.bodies[k];
+    now_[i] = whole ? flow.states[k] : at(i, t);
+  }
+  const double roundoff = run_.options.roundoff ? new_roundoff(flow, t) : 0.0;
+  const Leg leg{flow.island,         booked_, now_, field_forces_, flow.exact, roundoff,
+                riding_work(flow, t)};
+  if (flow.island.forces.empty()) {
+    run_.account.leg(leg);
+  } else {
+    for (std::size_t k = 0; k < flow.motions.size(); ++k) {
+      flow.motions[k] = of(flow.island.bodies[k]);
+    }
+    run_.account.leg(leg, flow.motions, flow.booked, duration);
+  }
+  for (const BodyIndex i : flow.island.bodies) {
+    booked_[i] = now_[i];
+  }
+  flow.booked = t;
+}
+
+/// Of a driven surface since the ledger last looked, J: the normal force m a_s.n - F.n, integrated
+/// over the surface's displacement along n; F what is constant and what depends on the state.
+double EventMotions::riding_work(const Flow& flow, Instant t) {
+  const BodyIndex i = flow.island.bodies.front();
+  const std::optional<Support>& support = bodies_[i].support;
+  if (!support || run_.model.mobility(support->surface) != Mobility::driven) {
+    return 0.0;
+  }
+  const Vector3& n = support->normal;
+  const double v0 = n.dot(booked_[i].twist.linear);
+  const double v1 = n.dot(now_[i].twist.linear);
+  const double rise = n.dot(now_[i].pose.position - booked_[i].pose.position);
+  return 0.5 * flow.island.inertia[0].mass * (v1 - v0) * (v1 + v0) - n.dot(net_force(i)) * rise +
+         run_.account.bearing_work(run_.model.islands()[run_.model.island_of(i)].forces, of(i), n,
+                                   flow.booked, t - flow.booked);
+}
+
+/// Roundoff of the current segment since the ledger last looked, J.
+double EventMotions::new_roundoff(Flow& flow, Instant t) {
+  flow.replayed.resize(flow.launched.size());
+  if (!flow.stepper->replay(flow.island, t - of(flow.island.bodies.front()).start, flow.launched,
+                            flow.replayed)) {
+    return 0.0;
+  }
+  double sum = 0.0;
+  for (std::size_t k = 0; k < flow.replayed.size(); ++k) {
+    sum += roundoff_energy(flow.island.inertia[k].mass, flow.island.constant_force[k],
+                           now_[flow.island.bodies[k]], flow.replayed[k]);
+  }
+  return sum - std::exchange(flow.roundoff, sum);
+}
+
+// --- What is told ------------------------------------------------------------------------------
+
+void EventMotions::note(EventKind kind, BodyIndex a, BodyIndex b, Instant t) {
+  Event event{.time = t, .kind = kind, .a = a, .b = b};
+  event.before_a = event.after_a = at(a, t);
+  event.before_b = event.after_b = at(b, t);
+  run_.note(event);
+}
+
+std::int64_t EventMotions::evaluations() const {
+  std::int64_t sum = 0;
+  for (const Flow& flow : flows_) {
+    sum += flow.stepper->evaluations();
+  }
+  return sum;
+}
+
+void EventMotions::MovingBody::persist(Archive& archive) { archive(motion, support, fields); }
+
+void EventMotions::Flow::persist(Archive& archive) {
+  archive(island.constant_force, carried, states, launched, roundoff, booked);
+  stepper->persist(archive);
+}
+
+void EventMotions::persist(Archive& archive) {
+  if (archive.reading()) {
+    for (Flow& flow : flows_) {
+      flow.stepper->start(flow.island, Instant{}, flow.states);
+    }
+  }
+  archive(now_, booked_, field_forces_, bodies_);
+  for (Flow& flow : flows_) {
+    archive(flow);
+  }
+  if (archive.reading()) {
+    for (Flow& flow : flows_) {
+      const std::vector<Vector3> forces = field_forces_;  // as they were when it was launched
+      const std::vector<Vector3> constant = flow.island.constant_force;
+      set_forces(flow);
+      flow.island.constant_force = constant;
+      field_forces_ = forces;
+    }
+  }
+}
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,127 @@
+#pragma once
+
+#include "core/schemes/event/event_run.hpp"
+#include "core/schemes/shared/support.hpp"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+
+/// How every body of an event-driven run moves, each for itself and from a time of its own.
+///
+/// An island is *launched* at a state: its stepper says how it moves, segment by segment, until it
+/// is launched again. Every new motion makes stale what the agenda holds of the body. The ledger
+/// follows an island when it is *booked*, up to the time that is told.
+class EventMotions {
+ public:
+  EventMotions(EventRun& run, const Method& method);
+
+  /// First motions of all bodies, from the model's initial state.
+  void begin();
+
+  [[nodiscard]] const Motion& of(BodyIndex i) const { return bodies_[i].motion; }
+  [[nodiscard]] MovingShape moving(BodyIndex i) const {
+    return {run_.model.shape(i), bodies_[i].motion};
+  }
+  [[nodiscard]] BodyState at(BodyIndex i, Instant t) const;
+  /// States of the event at hand, by body: an event brings here what it looks at, changes it, and
+  /// launches from it. Of no meaning otherwise, except of what is fixed.
+  [[nodiscard]] BodyState& now(BodyIndex i) { return now_[i]; }
+  [[nodiscard]] const BodyState& now(BodyIndex i) const { return now_[i]; }
+  void bring(BodyIndex i, Instant t) { now_[i] = at(i, t); }
+  /// Every body of the island of i but i itself.
+  void bring_others(BodyIndex i, Instant t);
+  [[nodiscard]] const std::vector<BodyIndex>& island(BodyIndex i) const {
+    return run_.model.islands()[run_.model.island_of(i)].bodies;
+  }
+
+  /// The state of the island of i has jumped to `now`: new motions from there.
+  void launch(BodyIndex i, Instant t);
+  /// The segment of a body has ended: the next one.
+  void go_on(BodyIndex i, Instant t);
+  /// Body i has the hand's translation from t on, and its own orientation; what takes it from where
+  /// it was to `state` is the hand's work. Until `let_go`.
+  void carry(BodyIndex i, BodyIndex hand, const BodyState& state, Instant t);
+  void let_go(BodyIndex i) { flow_of(i).carried = false; }
+
+  /// The surface that ball i rests or slides on.
+  [[nodiscard]] const std::optional<Support>& support(BodyIndex i) const {
+    return bodies_[i].support;
+  }
+  /// Takes effect with the next launch.
+  void set_support(BodyIndex i, const std::optional<Support>& support) {
+    bodies_[i].support = support;
+  }
+  [[nodiscard]] bool is_supported_by(BodyIndex ball, BodyIndex surface) const {
+    return bodies_[ball].support && bodies_[ball].support->surface == surface;
+  }
+  /// The fields that body i is in; they act from the next launch on.
+  [[nodiscard]] std::vector<BodyIndex>& fields(BodyIndex i) { return bodies_[i].fields; }
+  [[nodiscard]] bool is_in_field(BodyIndex i, BodyIndex field) const;
+  /// What surface and forces do to a ball on it, m/s^2: a_s.n - F.n / m, positive while it is
+  /// pressed; the ball alone in its island and at `now`.
+  [[nodiscard]] double pressing(BodyIndex ball, const Support& support, Instant t) const;
+
+  /// The ledger follows the island of i up to t; `now` is then the state there.
+  void book(BodyIndex i, Instant t) { book(flow_of(i), t); }
+  void book_all(Instant t);
+
+  /// Tells the recorder what happened to two bodies whose states did not jump.
+  void note(EventKind kind, BodyIndex a, BodyIndex b, Instant t);
+  [[nodiscard]] std::int64_t evaluations() const;
+
+  void persist(Archive& archive);
+
+ private:
+  struct MovingBody {
+    Motion motion;
+    std::optional<Support> support;
+    std::vector<BodyIndex> fields;
+
+    void persist(Archive& archive);
+  };
+  /// An island, its stepper, and how far the ledger has followed it.
+  struct Flow {
+    Island island;
+    std::unique_ptr<Stepper> stepper;
+    bool exact = false;
+    bool carried = false;             ///< a hand holds its body
+    std::vector<BodyState> states{};  ///< at the end of the segment
+    std::vector<Motion> motions{};
+    std::unique_ptr<SupportForce> support{};  ///< while it slides under state-dependent forces
+    std::vector<BodyState> launched{};        ///< where the segment began: for replays
+    std::vector<ReplayedStep> replayed{};
+    double roundoff = 0.0;  ///< of the segment so far, J
+    Instant booked{};       ///< how far the ledger has followed it
+
+    void persist(Archive& archive);
+  };
+
+  void next_segment(Flow& flow, Instant t);
+  void drive(BodyIndex i, Instant t);
+  void set_motion(BodyIndex i, const Motion& motion);
+  void hold(Flow& flow, Instant t);
+  void set_forces(Flow& flow);
+  [[nodiscard]] Vector3 field_forces_at(BodyIndex i) const;
+  [[nodiscard]] Vector3 net_force(BodyIndex i) const;
+  [[nodiscard]] Vector3 acting_force(BodyIndex i, Instant t, const BodyState& state) const;
+
+  void book(Flow& flow, Instant t);
+  [[nodiscard]] double riding_work(const Flow& flow, Instant t);
+  [[nodiscard]] double new_roundoff(Flow& flow, Instant t);
+
+  [[nodiscard]] Flow& flow_of(BodyIndex i) { return flows_[run_.model.island_of(i)]; }
+
+  EventRun& run_;
+  std::vector<MovingBody> bodies_;
+  std::vector<Flow> flows_;
+  State now_;
+  State booked_;                       ///< where the ledger is
+  std::vector<Vector3> field_forces_;  ///< N, as of the last launch
+};
+
+}  // namespace core
+}  // namespace kairos

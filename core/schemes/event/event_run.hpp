@@ -1,0 +1,37 @@
+#pragma once
+
+#include "core/schemes/event/event_agenda.hpp"
+#include "core/schemes/shared/scheme_run.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace kairos {
+inline namespace core {
+
+/// What the parts of an event-driven run share: also what is due, and how far predictions go.
+struct EventRun : SchemeRun {
+  EventRun(const Model& of, const Method& method, const SchemeOptions& asked, Recorder& to)
+      : SchemeRun(of, method, asked, to),
+        agenda(of),
+        // Not shorter than some frames, so that epochs cost nothing.
+        epoch(std::max(of.scene().duration, 64.0 * mean_frame)) {}
+
+  void stop(Instant t, std::string why) {
+    if (!stopped()) {
+      stopped_at = t;
+      SchemeRun::stop(std::move(why));
+    }
+  }
+
+  Agenda agenda;
+  /// Nothing is predicted beyond the end of the epoch, which lasts as long as the scene says that
+  /// it is of interest: predictions, hence bits, do not depend on when the run is to end.
+  const double epoch;  ///< s
+  Instant epoch_end;
+  Instant stopped_at;
+};
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,141 @@
+#include "core/schemes/event/event_world.hpp"
+
+#include "core/archive.hpp"
+
+#include <utility>
+
+namespace kairos {
+inline namespace core {
+
+EventWorld::EventWorld(const Model& model, const Method& method, const SchemeOptions& options,
+                       Recorder& recorder)
+    : run_(model, method, options, recorder),
+      grasps_(model),
+      motions_(run_, method),
+      predictor_(run_, motions_, grasps_, method),
+      contacts_(run_, motions_, predictor_),
+      hands_(run_, motions_, predictor_, contacts_, grasps_),
+      clock_(run_.options),
+      drawn_(model.initial_state()) {}
+
+bool EventWorld::begin() {
+  if (!run_.options.resume.empty()) {
+    Archive archive(run_.options.resume);
+    persist(archive);
+    return open_frame();
+  }
+  begin_epoch(Instant{});
+  motions_.begin();
+  for (const auto& grip : run_.model.grips()) {
+    hands_.follow(grip.hand, run_.time);
+  }
+  predictor_.predict_all(run_.time);
+  return true;
+}
+
+void EventWorld::take() {
+  const DueEvent event = run_.agenda.pop();
+  if (event.due == Due::epoch_end) {
+    return next_epoch(event.time);
+  }
+  if (event.due == Due::contact_begins) {
+    return contacts_.begin_contact(event.a, event.time);
+  }
+  if (event.stale) {
+    return;
+  }
+  run_.time = event.time;
+  switch (event.due) {
+    case Due::segment_end:
+      return end_segment(event.a, event.time);
+    case Due::support_ends:
+      return contacts_.leave_support(event.a, event.time);
+    case Due::epoch_end:
+    case Due::contact_begins:
+      return;
+    case Due::field_entered:
+      return contacts_.cross_field(event.a, event.b, event.time, true);
+    case Due::field_left:
+      return contacts_.cross_field(event.a, event.b, event.time, false);
+    case Due::clear_of_hand:
+      return hands_.clear(event.a, event.b, event.time);
+    case Due::horizon:
+      return predictor_.predict(event.a, event.time);
+    case Due::recheck:
+      return predictor_.predict_pair(event.a, event.b, event.time);
+    case Due::impact:
+      return contacts_.impact(event.a, event.b, event.time, event.patience, event.decided);
+  }
+}
+
+void EventWorld::begin_epoch(Instant t) {
+  run_.epoch_end = t + run_.epoch;
+  const BodyIndex any = run_.agenda.by_name().front();
+  run_.agenda.push(run_.epoch_end, Due::epoch_end, any, any);
+}
+
+/// Predictions were made up to here: makes those of the next epoch.
+void EventWorld::next_epoch(Instant t) {
+  begin_epoch(t);
+  for (const BodyIndex i : run_.agenda.by_name()) {
+    // How long a ball is supported was looked at for one epoch only; where the surface moves, its
+    // next motion tells.
+    const auto& support = motions_.support(i);
+    if (support && run_.model.mobility(support->surface) != Mobility::driven) {
+      motions_.book(i, t);
+      motions_.bring(i, t);
+      motions_.launch(i, t);
+    }
+  }
+  predictor_.predict_all(t);
+}
+
+void EventWorld::end_segment(BodyIndex i, Instant t) {
+  motions_.go_on(i, t);
+  if (run_.model.mobility(i) == Mobility::driven) {
+    contacts_.carry_riders(i, t);
+    hands_.follow(i, t);
+    return predictor_.predict(i, t);
+  }
+  for (const BodyIndex k : motions_.island(i)) {
+    predictor_.predict(k, t);
+  }
+}
+
+bool EventWorld::draw() {
+  run_.time = stopped() ? run_.stopped_at : clock_.next();
+  motions_.book_all(run_.time);
+  for (BodyIndex i = 0; i < run_.model.size(); ++i) {
+    drawn_[i] =
+        run_.model.mobility(i) == Mobility::fixed ? motions_.now(i) : motions_.at(i, run_.time);
+  }
+  run_.account.balance(run_.time, drawn_);
+  run_.recorder.stage(Stage::draw, 1.0);
+  run_.recorder.frame({clock_.index(), run_.time, drawn_, run_.ledger, grasps_.in_hand()});
+  ++run_.cost.frames;
+  return !stopped() && open_frame();
+}
+
+/// The frame that follows the one drawn last; false where the run ends.
+bool EventWorld::open_frame() {
+  clock_.look(run_.time);
+  if (clock_.whole()) {
+    run_.offer_checkpoint(clock_.last(), [this](Archive& archive) { persist(archive); });
+  }
+  return clock_.advance();
+}
+
+RunResult EventWorld::result() && {
+  run_.cost.right_hand_sides += motions_.evaluations();
+  return std::move(run_).result(std::move(drawn_));
+}
+
+/// What a run needs to go on, between a frame that was drawn and the next.
+void EventWorld::persist(Archive& archive) {
+  archive(run_.time, run_.epoch_end, clock_, drawn_, grasps_, run_.agenda, run_.ledger, run_.cost,
+          motions_, predictor_, contacts_);
+  run_.recorder.persist(archive);
+}
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,253 @@
+#include "core/schemes/shared/energy_account.hpp"
+
+#include <array>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+struct Node {
+  double abscissa;  ///< in [0, 1]
+  double weight;
+};
+/// Gauss-Legendre, 8 points: exact for polynomial power up to degree 15 [Abramowitz1964, 25.4.30].
+constexpr std::array<Node, 8> nodes{{{0.019855071751231884, 0.050614268145188130},
+                                     {0.101666761293186630, 0.111190517226687240},
+                                     {0.237233795041835507, 0.156853322938943644},
+                                     {0.408282678752175098, 0.181341891689180991},
+                                     {0.591717321247824902, 0.181341891689180991},
+                                     {0.762766204958164493, 0.156853322938943644},
+                                     {0.898333238706813370, 0.111190517226687240},
+                                     {0.980144928248768116, 0.050614268145188130}}};
+
+/// 1/2 m (v1^2 - v0^2), factored so that nothing cancels.
+double kinetic_gain(double m, const Vector3& v0, const Vector3& v1) {
+  return 0.5 * m * (v1 - v0).dot(v1 + v0);
+}
+
+double spin_energy(const BodyInertia& inertia, const BodyState& s) {
+  const Vector3 w_B = s.pose.orientation.conjugate() * s.twist.angular;
+  return 0.5 * w_B.dot(inertia.principal.cwiseProduct(w_B));
+}
+
+/// What rotation gained, by principal axes: a body that tumbles moves energy from one to another.
+Vector3 spin_gains(const BodyInertia& inertia, const BodyState& from, const BodyState& to) {
+  const Vector3 w0 = from.pose.orientation.conjugate() * from.twist.angular;
+  const Vector3 w1 = to.pose.orientation.conjugate() * to.twist.angular;
+  return 0.5 * inertia.principal.cwiseProduct((w1 - w0).cwiseProduct(w1 + w0));
+}
+
+void gather(const Island& island, std::span<const BodyState> bodies, std::vector<BodyState>& out) {
+  out.clear();
+  for (const BodyIndex i : island.bodies) {
+    out.push_back(bodies[i]);
+  }
+}
+
+}  // namespace
+
+double roundoff_energy(double mass, const Vector3& force, const BodyState& computed,
+                       const ReplayedStep& exact) {
+  const Vector3 dv = (computed.twist.linear - exact.velocity_high) - exact.velocity_low;
+  const Vector3 dp = (computed.pose.position - exact.position_high) - exact.position_low;
+  return mass * (computed.twist.linear - 0.5 * dv).dot(dv) - force.dot(dp);
+}
+
+Vector3 field_force(const Model& model, BodyIndex field, const BodyState& field_state,
+                    BodyIndex body) {
+  const Vector3 offered = model.entity(field).get_force(model.body(field), field_state);
+  const bool per_mass = model.scene().gravity == GravityMode::acceleration;
+  Vector3 taken = Vector3::Zero();
+  model.entity(body).give_force(taken,
+                                per_mass ? Vector3(model.inertia(body).mass * offered) : offered);
+  return taken;
+}
+
+EnergyAccount::EnergyAccount(const Model& model, EnergyLedger& ledger)
+    : model_(model), ledger_(ledger) {}
+
+double EnergyAccount::surplus(const Leg& leg) {
+  double surplus = 0.0;
+  for (std::size_t k = 0; k < leg.island.bodies.size(); ++k) {
+    const BodyIndex i = leg.island.bodies[k];
+    const BodyInertia& inertia = leg.island.inertia[k];
+    const BodyState& from = leg.from[i];
+    const BodyState& to = leg.to[i];
+    const Vector3 displacement = to.pose.position - from.pose.position;
+    const double falls = model_.gravity_force(i).dot(displacement);
+    const double other = leg.other_force[i].dot(displacement);
+    ledger_.exchange(falls);
+    if (other != 0.0) {
+      ledger_.add(EnergyLine::field_work, other);
+    }
+    double gain = kinetic_gain(inertia.mass, from.twist.linear, to.twist.linear);
+    if (inertia.rotates) {
+      const Vector3 gains = spin_gains(inertia, from, to);
+      ledger_.exchange(gains.cwiseAbs().sum());
+      gain += gains.sum();
+    }
+    surplus += gain - falls - other;
+  }
+  if (leg.roundoff != 0.0) {
+    ledger_.add(EnergyLine::roundoff, leg.roundoff);
+    surplus -= leg.roundoff;
+  }
+  if (leg.riding_work != 0.0) {
+    ledger_.add(EnergyLine::driven_work, leg.riding_work);
+    surplus -= leg.riding_work;
+  }
+  return surplus;
+}
+
+void EnergyAccount::act(std::span<const Force* const> forces, std::span<const Motion> motions,
+                        Instant t) {
+  along_.clear();
+  for (const Motion& motion : motions) {
+    const double s = t - motion.start;
+    along_.push_back({motion.pose(s), motion.twist(s)});
+  }
+  wrenches_.assign(motions.size(), Wrench{});
+  for (const Force* force : forces) {
+    force->add(t, along_, wrenches_);
+  }
+}
+
+/// Integral of power over the motions, for a force without a potential.
+double EnergyAccount::work_along(const Force& force, std::span<const Motion> motions, Instant start,
+                                 double duration) {
+  const Force* const forces[] = {&force};
+  double work = 0.0;
+  for (const Node& node : nodes) {
+    const Instant t = start + node.abscissa * duration;
+    act(forces, motions, t);
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+      // The path's own velocity, which a dense output may tell apart from `twist`.
+      const Vector3 path_velocity = motions[k].position.derivative(t - motions[k].start);
+      work += node.weight * duration *
+              (wrenches_[k].force.dot(path_velocity) +
+               wrenches_[k].torque.dot(along_[k].twist.angular));
+    }
+  }
+  return work;
+}
+
+double EnergyAccount::bearing_work(std::span<const Force* const> forces, const Motion& motion,
+                                   const Vector3& normal, Instant start, double duration) {
+  double work = 0.0;
+  for (const Node& node : nodes) {
+    const Instant t = start + node.abscissa * duration;
+    act(forces, {&motion, 1}, t);
+    work -= node.weight * duration * normal.dot(wrenches_[0].force) *
+            normal.dot(motion.position.derivative(t - motion.start));
+  }
+  return work;
+}
+
+void EnergyAccount::leg(const Leg& leg) {
+  const double truncation = surplus(leg);
+  if (!leg.exact) {
+    ledger_.add(EnergyLine::truncation, truncation);
+  }
+}
+
+void EnergyAccount::leg(const Leg& leg, std::span<const Motion> motions, Instant start,
+                        double duration) {
+  double truncation = surplus(leg);
+  gather(leg.island, leg.from, from_);
+  gather(leg.island, leg.to, to_);
+  for (const Force* force : leg.island.forces) {
+    if (force->conservative()) {
+      const double work = force->potential(start, from_) - force->potential(start + duration, to_);
+      ledger_.exchange(work);
+      truncation -= work;
+    } else {
+      const double stored =
+          force->potential(start + duration, to_) - force->potential(start, from_);
+      const double work = work_along(*force, motions, start, duration);
+      ledger_.add(EnergyLine::field_work, work + stored);
+      truncation -= work;
+    }
+  }
+  if (!leg.exact) {
+    ledger_.add(EnergyLine::truncation, truncation);
+  }
+}
+
+void EnergyAccount::carried(const Island& island, Instant t, std::span<const BodyState> from,
+                            std::span<const BodyState> to) {
+  double work = 0.0;
+  for (std::size_t k = 0; k < island.bodies.size(); ++k) {
+    const BodyIndex i = island.bodies[k];
+    const BodyInertia& inertia = island.inertia[k];
+    work += kinetic_gain(inertia.mass, from[i].twist.linear, to[i].twist.linear) -
+            model_.gravity_force(i).dot(to[i].pose.position - from[i].pose.position);
+    if (inertia.rotates) {
+      work += spin_energy(inertia, to[i]) - spin_energy(inertia, from[i]);
+    }
+  }
+  if (!island.forces.empty()) {
+    work += island_potential(island, t, to) - island_potential(island, t, from);
+  }
+  ledger_.add(EnergyLine::conveyor_and_hand, work);
+}
+
+void EnergyAccount::struck(BodyIndex i, const BodyState& before, const BodyState& after) {
+  const BodyInertia& inertia = model_.inertia(i);
+  ledger_.exchange(kinetic_gain(inertia.mass, before.twist.linear, after.twist.linear));
+  if (inertia.rotates) {
+    ledger_.exchange(spin_gains(inertia, before, after).cwiseAbs().sum());
+  }
+}
+
+void EnergyAccount::open(Instant t, std::span<const BodyState> bodies) {
+  ledger_.open(kinetic(bodies), potential(t, bodies));
+  ledger_.exchange(ledger_.kinetic());
+  for (const BodyIndex i : model_.free_by_name()) {  // one by one: their sum may cancel
+    ledger_.exchange(model_.gravity_potential(i, bodies[i].pose.position));
+  }
+  for (const Island& island : model_.islands()) {
+    ledger_.exchange(island_potential(island, t, bodies));
+  }
+}
+
+void EnergyAccount::balance(Instant t, std::span<const BodyState> bodies) {
+  ledger_.balance(kinetic(bodies), potential(t, bodies));
+}
+
+double EnergyAccount::kinetic(std::span<const BodyState> bodies) const {
+  CompensatedSum sum;
+  for (const BodyIndex i : model_.free_by_name()) {
+    sum.add(model_.kinetic_energy(i, bodies[i]));
+  }
+  return sum.value();
+}
+
+double EnergyAccount::potential(Instant t, std::span<const BodyState> bodies) {
+  CompensatedSum sum;
+  for (const BodyIndex i : model_.free_by_name()) {
+    // Of bodies above and below the origin the potentials cancel; their rounding would not.
+    const Vector3& force = model_.gravity_force(i);
+    for (int axis = 0; axis < 3; ++axis) {
+      sum.add_product(-force[axis], bodies[i].pose.position[axis]);
+    }
+  }
+  for (const Island& island : model_.islands()) {
+    if (!island.forces.empty()) {
+      sum.add(island_potential(island, t, bodies));
+    }
+  }
+  return sum.value();
+}
+
+double EnergyAccount::island_potential(const Island& island, Instant t,
+                                       std::span<const BodyState> bodies) {
+  gather(island, bodies, from_);
+  double sum = 0.0;
+  for (const Force* force : island.forces) {
+    sum += force->potential(t, from_);
+  }
+  return sum;
+}
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,64 @@
+#include "core/schemes/shared/scheme_run.hpp"
+
+#include <tuple>
+
+namespace kairos {
+inline namespace core {
+
+SchemeRun::SchemeRun(const Model& of, const Method& method, const SchemeOptions& asked,
+                     Recorder& to)
+    : model(of),
+      detector(*method.detector),
+      law(*method.law),
+      options(asked),
+      recorder(to),
+      wants_motions(to.wants_motions()),
+      mean_frame(mean_frame_duration(asked.frames)),
+      account(of, ledger) {
+  recorder.begin(of);
+}
+
+ImpactEnergy SchemeRun::exchange(Event& event, BodyState& a, BodyState& b, Vector3& force_a,
+                                 Vector3& force_b) {
+  event.before_a = a;
+  event.before_b = b;
+  const ImpactBody body_a{model.body(event.a), model.inertia(event.a), a, force_a};
+  const ImpactBody body_b{model.body(event.b), model.inertia(event.b), b, force_b};
+  const ImpactEnergy energy = law.apply(event.contact, body_a, body_b);
+  event.after_a = a;
+  event.after_b = b;
+  if (options.roundoff) {
+    ledger.add(EnergyLine::roundoff,
+               law.roundoff(event.contact, body_a, body_b, event.before_a, event.before_b));
+  }
+  for (const auto& [i, before, after] : {std::tuple{event.a, &event.before_a, &event.after_a},
+                                         std::tuple{event.b, &event.before_b, &event.after_b}}) {
+    if (!model.is_free(i)) {
+      continue;
+    }
+    account.struck(i, *before, *after);
+    if (after->pose.position != before->pose.position) {
+      account.moved(i, after->pose.position - before->pose.position);
+    }
+  }
+  ++cost.impacts;
+  note(event);
+  return energy;
+}
+
+void SchemeRun::note(const Event& event) {
+  ++cost.events;
+  recorder.event(event);
+}
+
+RunResult SchemeRun::result(State&& state) && {
+  return {stopped() ? RunStatus::stopped : RunStatus::completed,
+          std::move(reason),
+          time,
+          std::move(state),
+          ledger,
+          cost};
+}
+
+}  // namespace core
+}  // namespace kairos

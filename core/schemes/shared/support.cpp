@@ -1,0 +1,181 @@
+#include "core/schemes/shared/support.hpp"
+
+#include "core/archive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// First time in [lo, hi] at which the scalar polynomial (the x of `f`) is positive, by subdivision
+/// of its Bernstein form; infinite if it is nowhere.
+double first_positive(const Polynomial<3>& f, double lo, double hi, int depth) {
+  std::array<Polynomial<3>::Value, Polynomial<3>::max_degree + 1> b;
+  bernstein<3>(f, lo, hi, b);
+  bool any_positive = false;
+  bool all_positive = true;
+  for (int k = 0; k <= f.degree(); ++k) {
+    const double x = b[static_cast<std::size_t>(k)].x();
+    any_positive = any_positive || x > 0.0;
+    all_positive = all_positive && x > 0.0;
+  }
+  if (!any_positive) {
+    return infinity;
+  }
+  const double middle = 0.5 * (lo + hi);
+  if (all_positive || depth == 0 || !(lo < middle && middle < hi)) {
+    return lo;
+  }
+  const double early = first_positive(f, lo, middle, depth - 1);
+  return std::isfinite(early) ? early : first_positive(f, middle, hi, depth - 1);
+}
+
+double first_positive(const Polynomial<3>& f, double duration) {
+  constexpr int halvings = 60;  // of the duration: beyond the resolution of its double
+  return duration > 0.0 ? first_positive(f, 0.0, duration, halvings) : infinity;
+}
+
+/// (p - q).axis + constant, as the x of a polynomial.
+Polynomial<3> along(const Polynomial<3>& p, const Polynomial<3>& q, const Vector3& axis,
+                    double constant) {
+  Polynomial<3> f;
+  f.resize(std::max(p.degree(), q.degree()));
+  for (int k = 0; k <= f.degree(); ++k) {
+    Vector3 c = Vector3::Zero();
+    if (k <= p.degree()) {
+      c += p[k];
+    }
+    if (k <= q.degree()) {
+      c -= q[k];
+    }
+    f[k] = Vector3(c.dot(axis), 0.0, 0.0);
+  }
+  f[0].x() += constant;
+  return f;
+}
+
+/// Index of the box axis that the normal is parallel to, to roundoff; -1 if none.
+int face_axis(const Quaternion& q_WB, const Vector3& normal) {
+  const Vector3 normal_B = q_WB.conjugate() * normal;
+  for (int k = 0; k < 3; ++k) {
+    if (std::abs(normal_B[k]) >= 1.0 - 1e-12) {
+      return k;
+    }
+  }
+  return -1;
+}
+
+}  // namespace
+
+void Support::persist(Archive& archive) { archive(surface, normal); }
+
+std::optional<Support> find_support(const Model& model, BodyIndex ball, const Vector3& centre,
+                                    BodyIndex surface, const Motion& surface_motion, double s,
+                                    const Vector3& normal) {
+  if (!std::holds_alternative<Sphere>(model.shape(ball)) || model.is_free(surface) ||
+      model.is_field(surface) || surface_motion.rotation != RotationKind::fixed ||
+      model.islands()[model.island_of(ball)].bodies.size() != 1) {
+    return std::nullopt;
+  }
+  const Pose pose = surface_motion.pose(s);
+  if (const auto* half_space = std::get_if<HalfSpace>(&model.shape(surface))) {
+    return Support{surface, half_space_normal(*half_space, pose)};
+  }
+  const auto* box = std::get_if<Box>(&model.shape(surface));
+  const int axis = box != nullptr ? face_axis(pose.orientation, normal) : -1;
+  if (axis < 0) {
+    return std::nullopt;
+  }
+  // The arithmetic of `face_exit_time`: a ball that just left at an edge is not found on the face
+  // again by the rounding of another.
+  const Vector3 from_middle = centre - pose.position;
+  for (int k = 0; k < 3; ++k) {
+    const Vector3 along_k = pose.orientation * Vector3(Vector3::Unit(k));
+    if (k != axis && std::abs(from_middle.dot(along_k)) - box->half_extents[k] >= 0.0) {
+      return std::nullopt;
+    }
+  }
+  const Vector3 face = pose.orientation * Vector3(Vector3::Unit(axis));
+  return Support{surface, from_middle.dot(face) > 0.0 ? face : Vector3(-face)};
+}
+
+double face_exit_time(const Shape& surface, const Motion& surface_motion, const Motion& ball_motion,
+                      const Vector3& normal, double duration) {
+  const auto* box = std::get_if<Box>(&surface);
+  if (box == nullptr) {
+    return infinity;
+  }
+  const Quaternion q = surface_motion.orientation(0.0);
+  const int skipped = face_axis(q, normal);
+  double earliest = infinity;
+  for (int k = 0; k < 3; ++k) {
+    if (k == skipped) {
+      continue;
+    }
+    for (const double side : {-1.0, 1.0}) {
+      const Vector3 axis = q * Vector3(side * Vector3::Unit(k));
+      const Polynomial<3> beyond =
+          along(ball_motion.position, surface_motion.position, axis, -box->half_extents[k]);
+      earliest = std::min(earliest, first_positive(beyond, duration));
+    }
+  }
+  return earliest;
+}
+
+double lift_off_time(const Motion& surface_motion, const Vector3& normal, double mass,
+                     const Vector3& force) {
+  const Polynomial<3> acceleration = surface_motion.velocity.differentiated();
+  const Polynomial<3> missing = along(Polynomial<3>(Vector3(Vector3::Zero())), acceleration, normal,
+                                      force.dot(normal) / mass);
+  return first_positive(missing, surface_motion.duration);
+}
+
+double release_time(const std::function<double(double)>& contact_force, double duration) {
+  constexpr int samples = 32;
+  constexpr int halvings = 60;  // beyond the resolution of a double
+  double pressing = 0.0;
+  for (int k = 0; k <= samples; ++k) {
+    double free = duration * k / samples;
+    if (contact_force(free) >= 0.0) {
+      pressing = free;
+      continue;
+    }
+    for (int i = 0; i < halvings && k > 0; ++i) {
+      const double middle = 0.5 * (pressing + free);
+      (contact_force(middle) < 0.0 ? free : pressing) = middle;
+    }
+    return free;
+  }
+  return infinity;
+}
+
+Motion ride(const Motion& along_surface, const Motion& surface_motion, const Vector3& normal) {
+  Motion motion = along_surface;
+  motion.duration = std::min(motion.duration, surface_motion.duration);
+  const auto follow = [&](Polynomial<3>& to, const Polynomial<3>& from, int first) {
+    to.resize(std::max(to.degree(), from.degree()));
+    for (int k = first; k <= to.degree(); ++k) {
+      const double carried = k <= from.degree() ? normal.dot(Vector3(from[k])) : 0.0;
+      to[k] += normal * (carried - normal.dot(Vector3(to[k])));
+    }
+  };
+  follow(motion.position, surface_motion.position, 1);  // starts where the ball is, bit for bit
+  follow(motion.velocity, surface_motion.velocity, 0);
+  motion.error_radius = std::max(motion.error_radius, surface_motion.error_radius);
+  return motion;
+}
+
+void SupportForce::add(Instant, std::span<const BodyState> bodies,
+                       std::span<Wrench> wrenches) const {
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    wrenches[k].force -= normal_ * normal_.dot(wrenches[k].force);
+  }
+}
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,53 @@
+#include "experiments/figures/draw_figures.hpp"
+
+#include "experiments/child_process.hpp"
+#include "experiments/data_folders.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+namespace kairos::experiments {
+
+namespace {
+
+std::string look_for_python() {
+  const char* wanted = std::getenv("KAIROS_PYTHON");
+  for (const std::string& python :
+       {std::string(wanted == nullptr ? "" : wanted), std::string("python3"),
+        std::string("/usr/bin/python3"), std::string("/usr/local/bin/python3")}) {
+    if (!python.empty() &&
+        run_child({python, "-c", "import matplotlib, numpy"}, ChildOutput::hidden) == 0) {
+      return python;
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string find_python() {
+  static const std::string found = look_for_python();
+  return found;
+}
+
+std::string draw_figures(const std::string& script, const std::string& folder) {
+  const std::string scripts = figure_folder();
+  if (scripts.empty()) {
+    return "no figures: the folder of figure scripts is missing";
+  }
+  const std::string python = find_python();
+  if (python.empty()) {
+    return "no figures: no python3 with matplotlib was found; set KAIROS_PYTHON to one";
+  }
+  // -B: leave no compiled files beside the sources.
+  const int code = run_child({python, "-B", (std::filesystem::path(scripts) / "draw.py").string(),
+                              script.empty() ? "lines" : script, folder},
+                             ChildOutput::shown);
+  return code == 0 ? ""
+                   : fmt::format("no figures: the script '{}' ended with code {}",
+                                 script.empty() ? "lines" : script, code);
+}
+
+}  // namespace kairos::experiments

@@ -1,0 +1,107 @@
+#include "simulation/penetration.hpp"
+
+#include "simulation/registry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kairos {
+inline namespace simulation {
+namespace {
+
+/// Extent that scales roundoff: a half-space has none of its own.
+double finite_radius(const Shape& shape) {
+  const double radius = bounding_radius(shape);
+  return std::isfinite(radius) ? radius : 0.0;
+}
+
+bool held(BodyIndex a, BodyIndex b, std::span<const char> in_hand) {
+  return !in_hand.empty() && (in_hand[a] != 0 || in_hand[b] != 0);
+}
+
+}  // namespace
+
+PenetrationProbe::PenetrationProbe(const Model& model)
+    : model_(model), detector_(find_detector("certified")), bounds_(swept_bounds()) {
+  if (model.broad_phase() != "all-pairs") {
+    broad_phase_ = find_broad_phase(model.broad_phase())(model.size());
+  }
+}
+
+bool PenetrationProbe::can_penetrate(BodyIndex a, BodyIndex b) const {
+  return !model_.is_field(a) && !model_.is_field(b) && (model_.is_free(a) || model_.is_free(b));
+}
+
+/// Pairs that could penetrate, in the order of the model's, until `visit` says that it is enough.
+template <typename Visit>
+void PenetrationProbe::for_each_near_pair(std::span<const BodyState> bodies,
+                                          const Visit& visit) const {
+  if (!broad_phase_) {
+    for (const auto& [a, b] : model_.pairs()) {
+      if (can_penetrate(a, b) && !visit(a, b)) {
+        return;
+      }
+    }
+    return;
+  }
+  for (BodyIndex i = 0; i < model_.size(); ++i) {
+    const Motion still = Motion::at_rest(Instant{}, bodies[i].pose);
+    broad_phase_->update(i, bounds_({model_.shape(i), still}, {Instant{}, 0.0}));
+  }
+  std::vector<BodyIndex> near;
+  for (BodyIndex a = 0; a < model_.size(); ++a) {
+    near.clear();
+    broad_phase_->candidates(a, near);
+    for (const BodyIndex b : near) {
+      if (a < b && can_penetrate(a, b) && !visit(a, b)) {
+        return;
+      }
+    }
+  }
+}
+
+double PenetrationProbe::depth(BodyIndex a, BodyIndex b, std::span<const BodyState> bodies) const {
+  const Pose& pose_a = bodies[a].pose;
+  const Pose& pose_b = bodies[b].pose;
+  const Shape& shape_a = model_.shape(a);
+  const Shape& shape_b = model_.shape(b);
+  const double reach = bounding_radius(shape_a) + bounding_radius(shape_b);
+  if ((pose_a.position - pose_b.position).norm() > reach) {
+    return 0.0;
+  }
+  const double gap = detector_->overlap(shape_a, pose_a, shape_b, pose_b).gap;
+  const double scale = pose_a.position.norm() + pose_b.position.norm() + finite_radius(shape_a) +
+                       finite_radius(shape_b);
+  const double touching = 16.0 * std::numeric_limits<double>::epsilon() * scale;
+  return gap < -touching ? -gap : 0.0;
+}
+
+std::optional<Penetration> PenetrationProbe::deepest(std::span<const BodyState> bodies,
+                                                     std::span<const char> in_hand) const {
+  Penetration found;
+  for_each_near_pair(bodies, [&](BodyIndex a, BodyIndex b) {
+    const double d = held(a, b, in_hand) ? 0.0 : depth(a, b, bodies);
+    if (d > found.depth) {
+      found = {{a, b}, d};
+    }
+    return true;
+  });
+  return found.depth > 0.0 ? std::optional(found) : std::nullopt;
+}
+
+std::optional<Penetration> PenetrationProbe::first(std::span<const BodyState> bodies,
+                                                   std::span<const char> in_hand) const {
+  std::optional<Penetration> found;
+  for_each_near_pair(bodies, [&](BodyIndex a, BodyIndex b) {
+    const double d = held(a, b, in_hand) ? 0.0 : depth(a, b, bodies);
+    if (d > 0.0) {
+      found = Penetration{{a, b}, d};
+    }
+    return !found;
+  });
+  return found;
+}
+
+}  // namespace simulation
+}  // namespace kairos

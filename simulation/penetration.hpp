@@ -1,0 +1,54 @@
+#pragma once
+
+#include "core/contact_detector.hpp"
+#include "core/model.hpp"
+#include "core/scheme.hpp"
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace kairos {
+inline namespace simulation {
+
+/// Two solids that are inside each other.
+struct Penetration {
+  BodyPair pair;
+  double depth = 0.0;  ///< least translation that separates them, m, > 0
+};
+
+/// How deep solids are inside each other at one instant, by the exact distance of their shapes and
+/// whatever detector a run uses. Pairs of which neither is free are left alone: nobody could part
+/// them.
+///
+/// Where there are many bodies, only those are asked that a broad phase finds near each other.
+///
+/// Tolerance (roundoff): what 16 eps times the coordinates and extents can account for is touching
+/// and not penetration; a ball at rest on a floor stands at a rounded height.
+class PenetrationProbe {
+ public:
+  explicit PenetrationProbe(const Model& model);
+
+  /// The deepest of all pairs; the first of equals in the order of `Model::pairs`. What is in a
+  /// hand (see `Frame::in_hand`) has no contacts and penetrates nothing.
+  [[nodiscard]] std::optional<Penetration> deepest(std::span<const BodyState> bodies,
+                                                   std::span<const char> in_hand = {}) const;
+  /// The first pair that penetrates.
+  [[nodiscard]] std::optional<Penetration> first(std::span<const BodyState> bodies,
+                                                 std::span<const char> in_hand = {}) const;
+
+ private:
+  [[nodiscard]] bool can_penetrate(BodyIndex a, BodyIndex b) const;
+  [[nodiscard]] double depth(BodyIndex a, BodyIndex b, std::span<const BodyState> bodies) const;
+  template <typename Visit>
+  void for_each_near_pair(std::span<const BodyState> bodies, const Visit& visit) const;
+
+  const Model& model_;
+  std::shared_ptr<const ContactDetector> detector_;
+  std::unique_ptr<BroadPhase> broad_phase_;  ///< null where the model asks every pair
+  SweptBounds bounds_;
+};
+
+}  // namespace simulation
+}  // namespace kairos

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "core/scheme.hpp"
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace kairos {
+inline namespace simulation {
+
+// The one place where a string becomes a type: it knows the names of both sides of every port and
+// plugs them together. All functions are thread-safe; unknown names throw `InputError` with the
+// names that exist.
+
+struct IntegratorEntry {
+  StepperInfo info;
+  StepperFactory make = nullptr;
+};
+
+[[nodiscard]] std::span<const std::shared_ptr<const Scheme>> schemes();
+[[nodiscard]] std::span<const IntegratorEntry> integrators();
+[[nodiscard]] std::span<const std::shared_ptr<const ContactDetector>> detectors();
+[[nodiscard]] std::span<const std::shared_ptr<const ImpactLaw>> impact_laws();
+
+[[nodiscard]] std::span<const std::string_view> broad_phases();
+
+[[nodiscard]] std::shared_ptr<const Scheme> find_scheme(std::string_view name);
+[[nodiscard]] std::shared_ptr<const ContactDetector> find_detector(std::string_view name);
+[[nodiscard]] std::shared_ptr<const ImpactLaw> find_impact_law(std::string_view name);
+/// One stepper per island: the named one, used as named; for `auto` what the model chooses:
+/// `closed-form` where it can, a Runge-Kutta method otherwise.
+[[nodiscard]] IslandStepper find_integrator(std::string_view name,
+                                            const StepperOptions& options = {});
+/// The same with steppers that end their steps where bodies meet (`Stepper::watch`); null where a
+/// stepper cannot. `auto`: cvode-adams.
+[[nodiscard]] IslandStepper find_watching_integrator(std::string_view name,
+                                                     const StepperOptions& options = {});
+[[nodiscard]] BroadPhaseFactory find_broad_phase(std::string_view name);
+/// What a broad phase is told of a moving shape.
+[[nodiscard]] SweptBounds swept_bounds();
+
+}  // namespace simulation
+}  // namespace kairos

@@ -1,0 +1,109 @@
+#include "simulation/run_guard.hpp"
+
+#include "core/archive.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+namespace kairos {
+inline namespace simulation {
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::infinity();
+
+double spin_energy(const Vector3& moments, const BodyState& body) {
+  const Vector3 w_B = body.pose.orientation.conjugate() * body.twist.angular;
+  return 0.5 * w_B.dot(moments.cwiseProduct(w_B));
+}
+
+}  // namespace
+
+void RunGuard::begin(const Model& model) {
+  model_ = &model;
+  free_top_.assign(model.size(), 0);
+  most_energy_.assign(model.size(), unknown);
+  for (BodyIndex i = 0; i < model.size(); ++i) {
+    free_top_[i] = model.is_free(i) && model.rotates(i) ? 1 : 0;
+  }
+  for (const SceneForce& force : model.scene().forces) {
+    for (const BodyIndex i : force.bodies) {
+      free_top_[i] = force.force->involves_rotation() ? 0 : free_top_[i];
+    }
+  }
+  inner_.begin(model);
+}
+
+void RunGuard::frame(const Frame& frame) {
+  for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
+    check_finite(frame.bodies[i], i, frame.time);
+    check_spin(frame.bodies[i], i, frame.time);
+  }
+  last_.end = frame.time;
+  last_.state.assign(frame.bodies.begin(), frame.bodies.end());
+  last_.ledger = frame.ledger;
+  ++last_.cost.frames;
+  inner_.frame(frame);
+}
+
+void RunGuard::event(const Event& event) {
+  check_spin(event.before_a, event.a, event.time);
+  check_spin(event.before_b, event.b, event.time);
+  check_finite(event.after_a, event.a, event.time);
+  check_finite(event.after_b, event.b, event.time);
+  most_energy_[event.a] = most_spin_energy(event.after_a, event.a);
+  most_energy_[event.b] = most_spin_energy(event.after_b, event.b);
+  ++last_.cost.events;
+  inner_.event(event);
+}
+
+bool RunGuard::persist(Archive& archive) {
+  archive(last_.end, last_.state, last_.ledger, last_.cost, most_energy_);
+  return inner_.persist(archive);
+}
+
+RunResult RunGuard::stopped(std::string reason) && {
+  last_.status = RunStatus::stopped;
+  last_.reason = std::move(reason);
+  return std::move(last_);
+}
+
+void RunGuard::check_finite(const BodyState& body, BodyIndex i, Instant t) const {
+  // x - x is 0 for finite x alone; sums keep what is not.
+  const double sum = body.pose.position.sum() + body.pose.orientation.coeffs().sum() +
+                     body.twist.linear.sum() + body.twist.angular.sum();
+  if (!(sum - sum == 0.0)) {
+    throw Broken{
+        fmt::format("not finite: the state of '{}' at t = {} s", model_->body(i).name, t.seconds)};
+  }
+}
+
+/// Infinite for bodies that are not watched.
+double RunGuard::most_spin_energy(const BodyState& body, BodyIndex i) const {
+  if (free_top_[i] == 0) {
+    return unknown;
+  }
+  const Vector3& moments = model_->inertia(i).principal;
+  const Vector3 w_B = body.pose.orientation.conjugate() * body.twist.angular;
+  return moments.cwiseProduct(w_B).squaredNorm() / (2.0 * moments.minCoeff());
+}
+
+void RunGuard::check_spin(const BodyState& body, BodyIndex i, Instant t) {
+  if (free_top_[i] == 0) {
+    return;
+  }
+  if (most_energy_[i] == unknown) {
+    most_energy_[i] = most_spin_energy(body, i);
+  }
+  const double energy = spin_energy(model_->inertia(i).principal, body);
+  if (!(energy <= 2.0 * most_energy_[i])) {
+    throw Broken{fmt::format(
+        "unstable: at t = {} s '{}' turns with {:.3g} J, and its angular momentum allows {:.3g} J: "
+        "the integrator cannot follow its rotation in steps this long; allowed: shorter steps "
+        "(--frame, --step), or an integrator that controls its error",
+        t.seconds, model_->body(i).name, energy, most_energy_[i])};
+  }
+}
+
+}  // namespace simulation
+}  // namespace kairos

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "core/model.hpp"
+#include "core/recorder.hpp"
+#include "core/scheme.hpp"
+
+#include <string>
+#include <vector>
+
+namespace kairos {
+inline namespace simulation {
+
+/// The last line of defence: NaN and infinity never travel, and no run goes on whose integrator has
+/// lost a body's rotation. Ends the run at the first of either, with the last frame that was whole.
+///
+/// A free body of angular momentum L turns with an energy of at most L^2 / (2 I), I its smallest
+/// principal moment. A frame that shows twice as much, with no torque since the last impact, is not
+/// a large error but an unstable step: of Runge-Kutta methods beyond about 3 rad a step.
+class RunGuard : public Recorder {
+ public:
+  /// What ends a run.
+  struct Broken {
+    std::string reason;
+  };
+
+  explicit RunGuard(Recorder& inner) : inner_(inner) {}
+
+  void begin(const Model& model) override;
+  [[nodiscard]] bool wants_motions() const override { return inner_.wants_motions(); }
+  void frame(const Frame& frame) override;
+  void motion(BodyIndex body, const Motion& motion) override { inner_.motion(body, motion); }
+  void event(const Event& event) override;
+  void stage(Stage stage, double fraction) override { inner_.stage(stage, fraction); }
+  bool persist(Archive& archive) override;
+
+  /// The run up to its last frame. Of its cost, frames and events are known.
+  [[nodiscard]] RunResult stopped(std::string reason) &&;
+
+ private:
+  void check_finite(const BodyState& body, BodyIndex i, Instant t) const;
+  void check_spin(const BodyState& body, BodyIndex i, Instant t);
+  [[nodiscard]] double most_spin_energy(const BodyState& body, BodyIndex i) const;
+
+  Recorder& inner_;
+  const Model* model_ = nullptr;
+  std::vector<char> free_top_;       ///< turns, and no force involves that
+  std::vector<double> most_energy_;  ///< J, since the last impact; infinite: not known yet
+  RunResult last_;
+};
+
+}  // namespace simulation
+}  // namespace kairos

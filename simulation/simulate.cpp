@@ -1,0 +1,186 @@
+#include "simulation/simulate.hpp"
+
+#include "core/archive.hpp"
+#include "core/error.hpp"
+#include "core/schemes/shared/journaled_stepper.hpp"
+#include "simulation/cold_restarts.hpp"
+#include "simulation/model_gaps.hpp"
+#include "simulation/penetration.hpp"
+#include "simulation/registry.hpp"
+#include "simulation/run_guard.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+namespace kairos {
+inline namespace simulation {
+namespace {
+
+/// A run of more frames than this would not end within a person's life.
+constexpr double most_frames = 1e13;
+
+/// The names of a choice, resolved.
+struct Plan {
+  std::shared_ptr<const Scheme> scheme;
+  Method method;
+  SchemeOptions options;
+};
+
+void require(bool good, std::string_view key, double value, std::string_view allowed) {
+  if (!good) {
+    throw InputError("", 0, std::string(key), fmt::format("is {}; allowed: {}", value, allowed));
+  }
+}
+
+bool positive(double x) { return std::isfinite(x) && x > 0.0; }
+bool not_negative(double x) { return std::isfinite(x) && x >= 0.0; }
+
+void check_numbers(const RunChoice& choice) {
+  const StepperOptions& stepper = choice.stepper;
+  require(positive(choice.duration.value_or(1.0)), "duration", choice.duration.value_or(1.0),
+          "a finite number > 0 (s)");
+  require(positive(choice.step.value_or(1.0)), "step", choice.step.value_or(1.0),
+          "a finite number > 0 (s)");
+  require(not_negative(choice.threshold), "threshold", choice.threshold,
+          "a finite number > 0 (m), or 0: half of the smallest extent");
+  require(not_negative(choice.toi_tolerance), "tolerance", choice.toi_tolerance,
+          "a finite number > 0 (m), or 0: the detector's default");
+  require(stepper.relative_tolerance >= 0.0, "relative tolerance", stepper.relative_tolerance,
+          "a number >= 0");
+  require(stepper.absolute_tolerance >= 0.0, "absolute tolerance", stepper.absolute_tolerance,
+          "a number >= 0 (m, m/s)");
+  require(choice.max_substeps >= 1, "max substeps", static_cast<double>(choice.max_substeps),
+          "a whole number >= 1");
+}
+
+SchemeOptions scheme_options(const Scene& scene, const RunChoice& choice) {
+  SchemeOptions options;
+  options.frames = choice.frames.value_or(scene.frames);
+  options.duration = choice.duration.value_or(scene.duration);
+  options.step = choice.step.value_or(0.0);
+  options.threshold = choice.threshold;
+  options.equal_substeps = choice.equal_substeps;
+  options.max_substeps = choice.max_substeps;
+  options.toi_tolerance = choice.toi_tolerance;
+  options.roundoff = choice.roundoff;
+  return options;
+}
+
+Plan make_plan(const Model& model, const RunChoice& choice) {
+  check_numbers(choice);
+  const auto detector = find_detector(choice.method.detector);
+  const auto integrator =
+      detector->info().at_step_ends ? find_watching_integrator : find_integrator;
+  Plan plan{find_scheme(choice.method.scheme),
+            {integrator(choice.method.integrator, choice.stepper), detector,
+             find_impact_law(choice.method.impact), find_broad_phase(model.broad_phase()),
+             swept_bounds()},
+            scheme_options(model.scene(), choice)};
+  if (choice.cold_restarts) {
+    plan.method.stepper = [make = plan.method.stepper](const Model& of, std::size_t island) {
+      return with_cold_restarts(make(of, island));
+    };
+  }
+  const double frame = mean_frame_duration(plan.options.frames);
+  require(positive(frame), "frame", frame, "a finite number > 0 (s)");
+  return plan;
+}
+
+std::string stepper_refusal(const Model& model, const Plan& plan) {
+  for (std::size_t i = 0; i < model.islands().size(); ++i) {
+    const std::unique_ptr<Stepper> stepper = plan.method.stepper(model, i);
+    if (stepper == nullptr) {
+      return fmt::format(
+          "detector '{}' needs an integrator that finds impacts by itself: "
+          "cvode-adams, cvode-bdf",
+          plan.method.detector->info().name);
+    }
+    const std::string reason = stepper->refuses(model.islands()[i]);
+    if (!reason.empty()) {
+      return fmt::format("integrator '{}': {}", stepper->info().name, reason);
+    }
+  }
+  return {};
+}
+
+std::string refusal(const Model& model, const Plan& plan) {
+  const SchemeInfo scheme = plan.scheme->info();
+  const DetectorInfo detector = plan.method.detector->info();
+  if (scheme.needs_location && !detector.locates) {
+    return fmt::format(
+        "scheme '{}' needs to know when two bodies touch; detector '{}' only tells whether they do",
+        scheme.name, detector.name);
+  }
+  if (const std::string pair = pair_across_islands(model); detector.at_step_ends && !pair.empty()) {
+    return fmt::format("detector '{}': {}", detector.name, pair);
+  }
+  if (plan.options.duration / mean_frame_duration(plan.options.frames) > most_frames) {
+    return fmt::format("{} s in frames of {} s are more than {} frames", plan.options.duration,
+                       mean_frame_duration(plan.options.frames), most_frames);
+  }
+  const std::string reason = stepper_refusal(model, plan);
+  return reason.empty() ? plan.scheme->refuses(model, plan.method, plan.options) : reason;
+}
+
+/// No scheme can tell what two solids do that start inside each other.
+void refuse_overlap_at_start(const Model& model) {
+  const State start = model.initial_state();
+  std::vector<char> in_hand(model.size(), 0);
+  for (const auto& [hand, held] : model.grips()) {
+    in_hand[held] = model.body(hand).drive->closed(Instant{}) ? 1 : 0;
+  }
+  if (const auto found = PenetrationProbe(model).first(start, in_hand)) {
+    const Body& a = model.body(found->pair.first);
+    const Body& b = model.body(found->pair.second);
+    throw InputError(model.scene().path, b.line, "body." + b.name,
+                     fmt::format("starts {:.3g} m inside body.{} (line {}), and at least one of "
+                                 "them can move; solids must start apart or touching",
+                                 found->depth, a.name, a.line));
+  }
+}
+
+void continue_as(const Continuation& continuation, Plan& plan) {
+  plan.options.keeper = continuation.keeper;
+  plan.options.resume = continuation.resume;
+  plan.method.stepper = [make = plan.method.stepper](const Model& model, std::size_t island) {
+    return make_persistent(make(model, island));
+  };
+}
+
+}  // namespace
+
+MethodChoice MethodChoice::thesis() { return {"original", "thesis-euler", "sat", "thesis"}; }
+
+std::string why_refused(const Model& model, const RunChoice& choice) {
+  return refusal(model, make_plan(model, choice));
+}
+
+RunResult simulate(const Model& model, const RunChoice& choice, Recorder& recorder,
+                   const Continuation& continuation) {
+  Plan plan = make_plan(model, choice);
+  if (const std::string reason = refusal(model, plan); !reason.empty()) {
+    throw InputError(model.scene().path, 0, "", reason);
+  }
+  refuse_overlap_at_start(model);
+  if (continuation.keeper != nullptr || !continuation.resume.empty()) {
+    continue_as(continuation, plan);
+  }
+  RunGuard guard(recorder);
+  try {
+    return plan.scheme->run(model, plan.method, plan.options, guard);
+  } catch (const RunGuard::Broken& found) {
+    return std::move(guard).stopped(found.reason);
+  }
+}
+
+Simulation simulate(const Scene& scene, const RunChoice& choice) {
+  const Model model(scene);
+  Simulation simulation;
+  simulation.result = simulate(model, choice, simulation.trajectory);
+  return simulation;
+}
+
+}  // namespace simulation
+}  // namespace kairos
