@@ -21,6 +21,7 @@ struct Known {
   double time;     ///< of first contact, s
   double closing;  ///< speed of approach then, m/s
   Vector3 normal;
+  Vector3 point;  ///< where they touch, m
 };
 
 Body unit_box() { return {}; }
@@ -45,6 +46,7 @@ Known thrown_ball() {
   known.time = 4.0 - std::sqrt(11.0);
   known.closing = 4.0 - known.time;
   known.normal = Vector3::UnitX();
+  known.point = {0.0, 0.25 + known.time, 0.5};
   return known;
 }
 
@@ -61,6 +63,7 @@ Known tilted_cubes() {
   known.query.b.velocity = -6.0 * known.normal;
   known.time = 0.5;
   known.closing = 6.0;
+  known.point = known.normal;
   return known;
 }
 
@@ -77,6 +80,7 @@ Known turning_cube() {
   known.time = angle / 0.5;
   known.closing = 0.5 * (std::cos(angle) - std::sin(angle));
   known.normal = Vector3::UnitX();
+  known.point = {0.0, std::cos(angle) - std::sin(angle), 0.0};
   return known;
 }
 
@@ -94,6 +98,7 @@ Known crossed_edges() {
   known.query.b.velocity = {0.0, 0.0, -2.0};
   known.time = 2.0 - std::numbers::sqrt2;
   known.closing = 2.0;
+  known.point = {0.1, 0.0, std::numbers::sqrt2};
   known.normal = Vector3::UnitZ();
   return known;
 }
@@ -110,6 +115,7 @@ Known ball_at_corner() {
   known.query.b.half_extents = Vector3::Constant(0.5);
   known.time = 1.0 - 0.25 / std::sqrt(3.0);
   known.closing = 2.0 * std::sqrt(3.0);
+  known.point = Vector3::Ones();
   return known;
 }
 
@@ -120,6 +126,7 @@ TimeOfImpact right_answer(const Known& known) {
   answer.t_hi = known.time + 1e-11;
   answer.gap = 0.5e-11 * known.closing;
   answer.normal = known.normal;
+  answer.witness_a = answer.witness_b = known.point;
   return answer;
 }
 
@@ -146,6 +153,7 @@ std::vector<Spoilt> spoilt_answers() {
        [](const Known&, TimeOfImpact& x) {
          x.normal = (x.normal + Vector3(1e-3, -2e-3, 1.5e-3)).normalized();
        }},
+      {Fault::witness, [](const Known&, TimeOfImpact& x) { x.witness_b.y() += 1e-3; }},
       {Fault::wide, [](const Known& k, TimeOfImpact& x) { x.t_hi = k.time + 1e-3; }},
       {Fault::vague,
        [](const Known& k, TimeOfImpact& x) {

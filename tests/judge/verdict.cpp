@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace kairos::judge {
 namespace {
@@ -13,6 +14,8 @@ constexpr double beyond_doubt = 64.0;
 
 /// Evaluations that only one query of a thousand may take.
 constexpr int costly = 2000;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double error_radii(const Query& q) { return q.a.error_radius + q.b.error_radius; }
 
@@ -99,6 +102,15 @@ void check_gap(const Query& q, const TimeOfImpact& answer, Verdict& verdict) {
   }
 }
 
+/// The normal of a ball has one direction.
+double tilt_of_normal(const Query& q, const TimeOfImpact& answer, const Placed<Long>& at) {
+  if (q.a.kind != Kind::sphere && q.b.kind != Kind::sphere) {
+    return 0.0;
+  }
+  const Vector<Long> right = separation(q.a, q.b, at).normal;
+  return static_cast<double>(norm(right - Vector<Long>(answer.normal)));
+}
+
 void check_normal(const Query& q, const TimeOfImpact& answer, Verdict& verdict) {
   const double hidden = roundoff(q, answer.t_lo);
   const double length = answer.normal.norm();
@@ -114,8 +126,46 @@ void check_normal(const Query& q, const TimeOfImpact& answer, Verdict& verdict) 
     }
   }
   // Told on its own scale: the gap may be negative by rounding, and so may it be along n.
-  if (std::abs(length - 1.0) > 1e-9 || !(overlap <= 10.0 * allowed_gap(q, answer.t_lo))) {
+  const double reach = std::min(q.a.kind == Kind::sphere ? q.a.reach() : infinity,
+                                q.b.kind == Kind::sphere ? q.b.reach() : infinity);
+  if (tilt_of_normal(q, answer, at) > 1e-8 + beyond_doubt * hidden / reach ||
+      std::abs(length - 1.0) > 1e-9 || !(overlap <= 10.0 * allowed_gap(q, answer.t_lo))) {
     verdict.note(Fault::normal, overlap, answer.t_lo, hidden);
+  }
+}
+
+/// How far a point in the world is from the surface of a body, m.
+double off_surface(const Body& body, const Vector3& point, double s) {
+  Query alone;
+  alone.a = body;
+  alone.a.age = s;
+  alone.b = {};
+  alone.b.position = point;
+  const Placed<Long> at = placed<Long>(alone, 0.0L);
+  if (body.kind == Kind::sphere) {
+    return std::abs(static_cast<double>(norm(at.offset) - Long(body.half_extents.x())));
+  }
+  if (body.kind == Kind::half_space) {
+    return std::abs(static_cast<double>(dot(outward(body, at.a), at.offset)));
+  }
+  const Vector<Long> p = at.a.along(at.offset);
+  Long inside = -std::numeric_limits<Long>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    inside = std::max(inside, magnitude(p[i]) - Long(body.half_extents[i]));
+  }
+  return std::abs(static_cast<double>(inside));
+}
+
+/// Witness points lie on the surfaces, no farther apart than the bodies.
+void check_witnesses(const Query& q, const TimeOfImpact& answer, Verdict& verdict) {
+  const double t = answer.t_lo;
+  const double slack = 10.0 * allowed_gap(q, t) + error_radii(q);
+  const double off = std::max(off_surface(q.a, answer.witness_a, q.a.age + t),
+                              off_surface(q.b, answer.witness_b, q.b.age + t));
+  const double apart = (answer.witness_b - answer.witness_a).norm();
+  const double beyond = apart - std::max(exact_distance(q, t), 0.0);
+  if (!(off <= slack) || !(beyond <= slack)) {
+    verdict.note(Fault::witness, std::max(off, beyond), t, roundoff(q, t));
   }
 }
 
@@ -218,9 +268,9 @@ void check_instant(const Query& q, const ContactDetector& detector, Verdict& ver
 
 std::string_view to_string(Fault fault) {
   constexpr std::array<std::string_view, fault_count> names{
-      "missed", "late",    "false",    "far",     "gap",     "dips",   "normal",
-      "wide",   "vague",   "nonsense", "swept",   "instant", "unsaid", "hidden",
-      "kept",   "shallow", "costly",   "gave_up", "unproven"};
+      "missed",  "late", "false",   "far",      "gap",     "dips",    "normal",
+      "witness", "wide", "vague",   "nonsense", "swept",   "instant", "unsaid",
+      "hidden",  "kept", "shallow", "costly",   "gave_up", "unproven"};
   return names[static_cast<std::size_t>(fault)];
 }
 
@@ -277,6 +327,7 @@ Verdict judge(const Query& q, const TimeOfImpact& answer, const ContactDetector&
       }
       check_gap(q, answer, verdict);
       check_normal(q, answer, verdict);
+      check_witnesses(q, answer, verdict);
       check_poses(q, answer, start_gap, verdict);
       if (answer.status == ToiStatus::impact) {
         check_some_within(q, answer, start_gap, verdict);

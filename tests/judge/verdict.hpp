@@ -17,6 +17,7 @@ enum class Fault {
   gap,       ///< the gap that is told is above the distance at t_lo, beyond rounding
   dips,      ///< the bodies overlap at the poses of t_lo, as a double computes them
   normal,    ///< not of length one, or the bodies overlap along it
+  witness,   ///< not on the surfaces, or farther apart than the bodies
   wide,      ///< at t_hi they are deep in one another
   vague,     ///< `undecided`, though there is clear contact, or clearly none
   nonsense,  ///< a number that is none, or a bracket outside the window
@@ -30,8 +31,8 @@ enum class Fault {
   gave_up,  ///< `undecided` out of touch, its budget of work spent: told, not a fault
   unproven,  ///< the judge's own budget ran out: told, not a fault
 };
-inline constexpr std::size_t fault_count = 19;
-inline constexpr std::size_t promises = 13;
+inline constexpr std::size_t fault_count = 20;
+inline constexpr std::size_t promises = 14;
 [[nodiscard]] std::string_view to_string(Fault fault);
 
 struct Verdict {
