@@ -4,9 +4,6 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
-#include <cstring>
-#include <utility>
-#include <vector>
 
 namespace kairos::ccd {
 namespace {
@@ -85,35 +82,6 @@ Limb subtract_product(const Limb* a, std::size_t n, Limb factor, Limb* r) {
 ExactInteger::ExactInteger(std::int64_t value) noexcept
     : size_(value == 0 ? 0 : 1), negative_(value < 0) {
   place_[0] = negative_ ? Limb{0} - static_cast<Limb>(value) : static_cast<Limb>(value);
-}
-
-ExactInteger::ExactInteger(const ExactInteger& other) { *this = other; }
-
-ExactInteger::ExactInteger(ExactInteger&& other) noexcept { *this = std::move(other); }
-
-ExactInteger& ExactInteger::operator=(const ExactInteger& other) {
-  if (this != &other) {
-    reserve(other.size_);
-    std::copy_n(other.limbs(), other.size_, limbs());
-    size_ = other.size_;
-    negative_ = other.negative_;
-  }
-  return *this;
-}
-
-ExactInteger& ExactInteger::operator=(ExactInteger&& other) noexcept {
-  if (this == &other) {
-    return *this;
-  }
-  if (other.heap_) {
-    heap_ = std::move(other.heap_);
-    capacity_ = std::exchange(other.capacity_, in_place);
-  } else {
-    std::copy_n(other.place_.data(), other.size_, limbs());
-  }
-  size_ = std::exchange(other.size_, 0);
-  negative_ = other.negative_;
-  return *this;
 }
 
 ExactInteger ExactInteger::from_double(double x, int exponent) {
@@ -280,6 +248,14 @@ ExactInteger operator*(const ExactInteger& a, const ExactInteger& b) {
     return product;
   }
   const std::uint32_t n = a.size_;
+  product.negative_ = a.negative_ != b.negative_;
+  if (n == 1 && b.size_ == 1) {
+    const Wide both = Wide{a.limbs()[0]} * b.limbs()[0];
+    product.place_[0] = static_cast<Limb>(both);
+    product.place_[1] = static_cast<Limb>(both >> limb_bits);
+    product.size_ = product.place_[1] != 0 ? 2 : 1;
+    return product;
+  }
   product.reserve(n + b.size_);
   const Limb* x = a.limbs();
   const Limb* y = b.limbs();
@@ -296,7 +272,6 @@ ExactInteger operator*(const ExactInteger& a, const ExactInteger& b) {
   }
   product.size_ = n + b.size_;
   product.size_ -= r[product.size_ - 1] == 0 ? 1 : 0;
-  product.negative_ = a.negative_ != b.negative_;
   return product;
 }
 

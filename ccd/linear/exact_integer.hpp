@@ -1,9 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
+#include <utility>
 
 namespace kairos::ccd {
 
@@ -15,8 +18,8 @@ class ExactInteger {
 
   ExactInteger() noexcept {}
   ExactInteger(std::int64_t value) noexcept;  // NOLINT(google-explicit-constructor): a number
-  ExactInteger(const ExactInteger& other);
-  ExactInteger(ExactInteger&& other) noexcept;
+  ExactInteger(const ExactInteger& other) { copy(other); }
+  ExactInteger(ExactInteger&& other) noexcept { move(other); }
   ExactInteger& operator=(const ExactInteger& other);
   ExactInteger& operator=(ExactInteger&& other) noexcept;
   ~ExactInteger() = default;
@@ -56,6 +59,8 @@ class ExactInteger {
   void grow(std::uint32_t count);     ///< the limbs are kept
   void add(const ExactInteger& other, bool negated);
   void trim();
+  void copy(const ExactInteger& other);
+  void move(ExactInteger& other) noexcept;
 
   std::unique_ptr<Limb[]> heap_;
   std::uint32_t capacity_ = in_place;
@@ -81,5 +86,44 @@ class ExactInteger {
   return a;
 }
 [[nodiscard]] inline ExactInteger operator<<(ExactInteger a, int bits) { return a <<= bits; }
+
+// Blocks of a fixed length are copied faster than the limbs in use.
+inline void ExactInteger::copy(const ExactInteger& other) {
+  constexpr std::uint32_t few = 4;
+  if (other.size_ <= few) {
+    std::memcpy(limbs(), other.limbs(), few * sizeof(Limb));
+  } else {
+    reserve(other.size_);
+    std::copy_n(other.limbs(), other.size_, limbs());
+  }
+  size_ = other.size_;
+  negative_ = other.negative_;
+}
+
+inline void ExactInteger::move(ExactInteger& other) noexcept {
+  if (other.heap_) {
+    heap_ = std::move(other.heap_);
+    capacity_ = std::exchange(other.capacity_, in_place);
+    size_ = std::exchange(other.size_, 0);
+    negative_ = other.negative_;
+  } else {
+    copy(other);
+    other.size_ = 0;
+  }
+}
+
+inline ExactInteger& ExactInteger::operator=(const ExactInteger& other) {
+  if (this != &other) {
+    copy(other);
+  }
+  return *this;
+}
+
+inline ExactInteger& ExactInteger::operator=(ExactInteger&& other) noexcept {
+  if (this != &other) {
+    move(other);
+  }
+  return *this;
+}
 
 }  // namespace kairos::ccd

@@ -52,6 +52,22 @@ ExactPolynomial::ExactPolynomial(ExactInteger a, ExactInteger b) {
   trim(1);
 }
 
+ExactPolynomial& ExactPolynomial::operator=(const ExactPolynomial& other) {
+  for (int i = 0; i <= std::max(degree_, other.degree_); ++i) {
+    (*this)[i] = other[i];
+  }
+  degree_ = other.degree_;
+  return *this;
+}
+
+ExactPolynomial& ExactPolynomial::operator=(ExactPolynomial&& other) noexcept {
+  for (int i = 0; i <= std::max(degree_, other.degree_); ++i) {
+    (*this)[i] = std::move(other[i]);
+  }
+  degree_ = std::exchange(other.degree_, -1);
+  return *this;
+}
+
 void ExactPolynomial::trim(int highest) {
   degree_ = highest;
   while (degree_ >= 0 && (*this)[degree_].is_zero()) {
@@ -113,8 +129,8 @@ ExactPolynomial ExactPolynomial::derivative() const {
 }
 
 int ExactPolynomial::sign_at(const Dyadic& t) const {
-  if (degree_ < 0) {
-    return 0;
+  if (degree_ < 0 || t.m.is_zero()) {
+    return c_[0].sign();
   }
   ExactInteger value = (*this)[degree_];
   for (int i = degree_ - 1, shift = t.e; i >= 0; --i, shift += t.e) {
@@ -133,6 +149,7 @@ Variations variations(const ExactPolynomial& p, const Dyadic& lower, const Dyadi
   const int e = std::max(lower.e, upper.e);
   const ExactInteger a = lower.m << (e - lower.e);
   const ExactInteger b = upper.m << (e - upper.e);
+  const bool upper_is_one = e == 0 && !b.is_zero();
   std::array<ExactInteger, ExactPolynomial::highest_degree + 1> c;
   std::array<std::int64_t, ExactPolynomial::highest_degree + 1> binomials{1};  // of (1 + s)^(n-i)
   c[0] = p[n];
@@ -140,13 +157,14 @@ Variations variations(const ExactPolynomial& p, const Dyadic& lower, const Dyadi
     const auto width = static_cast<std::size_t>(n - i);
     for (std::size_t j = width; j > 0; --j) {
       binomials[j] += binomials[j - 1];
-      c[j] = j == width ? c[j - 1] * b : c[j] * a + c[j - 1] * b;
+      ExactInteger from_below = upper_is_one ? c[j - 1] : c[j - 1] * b;
+      c[j] = j == width || a.is_zero() ? std::move(from_below) : from_below += c[j] * a;
     }
     c[0] = c[0] * a;
     if (!p[i].is_zero()) {
       const ExactInteger scaled = p[i] << (e * (n - i));
       for (std::size_t j = 0; j <= width; ++j) {
-        c[j] += scaled * ExactInteger(binomials[j]);
+        c[j] += binomials[j] == 1 ? scaled : scaled * ExactInteger(binomials[j]);
       }
     }
   }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
 
 namespace kairos::ccd {
 
@@ -28,6 +29,12 @@ class ExactPolynomial {
   static constexpr int highest_degree = 11;
 
   ExactPolynomial() = default;
+  // Only the coefficients in use are copied.
+  ExactPolynomial(const ExactPolynomial& other) { *this = other; }
+  ExactPolynomial(ExactPolynomial&& other) noexcept { *this = std::move(other); }
+  ExactPolynomial& operator=(const ExactPolynomial& other);
+  ExactPolynomial& operator=(ExactPolynomial&& other) noexcept;
+  ~ExactPolynomial() = default;
   /// a + b t
   ExactPolynomial(ExactInteger a, ExactInteger b);
 

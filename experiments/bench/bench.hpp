@@ -34,5 +34,7 @@ void bench_stepping(int rounds);
 /// Queries: overlap and time of impact of as many distinct pairs, beside FCL and Bullet, with what
 /// each missed; then the ratios against their bars.
 void bench_queries(std::size_t pairs, int rounds);
+/// Vertex and face, edge and edge on straight lines: mean, median and the share of every stage.
+void bench_vfee(std::size_t queries, int rounds);
 
 }  // namespace kairos::experiments

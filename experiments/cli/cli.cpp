@@ -45,6 +45,7 @@ void add_commands(CLI::App& app) {
   add_explain_command(app);
   add_list_command(app);
   add_toi_command(app);
+  add_vfee_command(app);
   add_sweep_command(app);
   add_experiment_command(app);
   add_reproduce_command(app);

@@ -27,6 +27,10 @@ struct BenchCommand {
       }
       return;
     }
+    if (name == "vfee") {
+      bench_vfee(pairs, rounds);
+      return;
+    }
     if (name != "ccd") {
       bench_stepping(rounds);
     }
@@ -43,13 +47,15 @@ void add_bench_command(CLI::App& app) {
   CLI::App* bench = app.add_subcommand(
       "bench", "Time it: ratios within one run, interleaved, the least of several rounds");
   bench
-      ->add_option("name", options->name,
-                   "bounce or ccd: times; without it both; accuracy: answers against a reference")
-      ->check(CLI::IsMember({"bounce", "ccd", "accuracy"}));
+      ->add_option(
+          "name", options->name,
+          "bounce, ccd or vfee: times; without it the first two; accuracy: answers against a "
+          "reference")
+      ->check(CLI::IsMember({"bounce", "ccd", "vfee", "accuracy"}));
   bench->add_option("--rounds", options->rounds, "how often each is timed")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  bench->add_option("--pairs", options->pairs, "ccd: how many distinct pairs")
+  bench->add_option("--pairs", options->pairs, "ccd, vfee: how many distinct pairs")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 22))
       ->capture_default_str();
   AccuracyOptions& accuracy = options->accuracy;

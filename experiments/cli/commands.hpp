@@ -13,6 +13,7 @@ void add_run_command(CLI::App& app);
 void add_explain_command(CLI::App& app);
 void add_list_command(CLI::App& app);
 void add_toi_command(CLI::App& app);
+void add_vfee_command(CLI::App& app);
 void add_sweep_command(CLI::App& app);
 void add_experiment_command(CLI::App& app);
 void add_reproduce_command(CLI::App& app);

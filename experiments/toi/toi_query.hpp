@@ -2,6 +2,7 @@
 
 #include "core/motion.hpp"
 #include "core/shape.hpp"
+#include "experiments/toi/row_stream.hpp"
 
 #include <array>
 #include <cstdint>
@@ -17,12 +18,6 @@ struct ToiQuery {
   Shape shape_a, shape_b;
   Motion motion_a, motion_b;
   double duration = 0.0;  ///< s
-};
-
-/// What is wrong with a row, to be named with its line.
-struct BadField {
-  std::string_view column;
-  std::string reason;
 };
 
 /// Where the columns of a file of queries are, and how its rows are read. Const after

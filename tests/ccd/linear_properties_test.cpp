@@ -3,7 +3,7 @@
 #include "ccd/linear/linear_impact.hpp"
 #include "tests/allocations.hpp"
 #include "tests/catch.hpp"
-#include "tests/ccd/linear_families.hpp"
+#include "experiments/vfee/linear_families.hpp"
 
 #include <cmath>
 #include <string>

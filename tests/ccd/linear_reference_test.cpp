@@ -6,7 +6,7 @@
 
 #include "ccd/linear/exact_motion.hpp"
 #include "tests/catch.hpp"
-#include "tests/ccd/linear_families.hpp"
+#include "experiments/vfee/linear_families.hpp"
 
 #include <cstdio>
 #include <cstdlib>
@@ -52,7 +52,7 @@ std::uint64_t compare_families(std::uint64_t count, const Change& change) {
       LinearFamilies family(static_cast<LinearFamily>(f), kind, seed);
       // Numbers of 2,000 bits, and more in polynomials: the reference takes up to 40 ms a query.
       const bool slow = static_cast<LinearFamily>(f) >= LinearFamily::scaled_axes;
-      for (std::uint64_t i = 0; i < (slow ? 1 + count / 16 : count); ++i) {
+      for (std::uint64_t i = 0; i < (slow ? 1 + count / 64 : count); ++i) {
         LinearQuery query = family.next();
         change(query, i);
         const LinearImpact got = linear_impact(query);

@@ -13,6 +13,7 @@ namespace kairos::reference {
 /// Random queries of the kinds that break floating-point predicates, and of those that do not.
 enum class LinearFamily : std::uint8_t {
   general,        ///< uniform in a cube
+  close,          ///< what a broad phase leaves over: near each other, moving a little
   grid,           ///< small whole numbers: every degeneracy happens
   tiny_grid,      ///< -1, 0 and 1
   flat,           ///< in a plane all the time
@@ -27,11 +28,11 @@ enum class LinearFamily : std::uint8_t {
   scaled_axes,    ///< a grid whose axes have units from 2^-1000 to 2^1000
   wild_exponents  ///< every number of any magnitude, subnormal to 1e300
 };
-inline constexpr int linear_families = 14;
+inline constexpr int linear_families = 15;
 inline constexpr std::array linear_family_names{
-    "general",     "grid",        "tiny grid",   "flat",          "on a line",
-    "at rest",     "one moves",   "translation", "touch",         "touch ulp",
-    "double root", "triple root", "scaled axes", "wild exponents"};
+    "general",   "close",       "grid",        "tiny grid",   "flat",
+    "on a line", "at rest",     "one moves",   "translation", "touch",
+    "touch ulp", "double root", "triple root", "scaled axes", "wild exponents"};
 
 class LinearFamilies {
  public:
@@ -46,6 +47,9 @@ class LinearFamilies {
     switch (family_) {
       case LinearFamily::general:
         fill([this] { return random_.uniform(-1.0, 1.0); });
+        break;
+      case LinearFamily::close:
+        close();
         break;
       case LinearFamily::grid:
         fill([this] { return whole(3); });
@@ -135,6 +139,31 @@ class LinearFamilies {
           p[to] += factor * p[from];
         }
       }
+    }
+  }
+  Vector3 in_cube(double half) {
+    const double x = random_.uniform(-half, half);
+    const double y = random_.uniform(-half, half);
+    return {x, y, random_.uniform(-half, half)};
+  }
+  /// A point above or beside a triangle, or two edges that cross above each other.
+  void close() {
+    const Vector3 drift = in_cube(0.5);
+    for (std::size_t i = 0; i < 4; ++i) {
+      query_.start[i] = in_cube(1.0);
+    }
+    const double a = random_.uniform(-0.25, 1.25);
+    const double b = random_.uniform(-0.25, 1.25);
+    const ccd::FourPoints& p = query_.start;
+    if (query_.kind == ccd::LinearKind::vertex_face) {
+      query_.start[0] = p[1] + a * (p[2] - p[1]) + (1.0 - a) * b * (p[3] - p[1]) + in_cube(0.1);
+    } else {
+      const Vector3 shift = p[0] + a * (p[1] - p[0]) - p[2] - b * (p[3] - p[2]) + in_cube(0.1);
+      query_.start[2] += shift;
+      query_.start[3] += shift;
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+      query_.end[i] = query_.start[i] + drift + in_cube(0.1);
     }
   }
   void flat() {
