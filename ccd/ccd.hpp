@@ -1,13 +1,14 @@
 #pragma once
 
 // The room `ccd`, as a consumer sees it: detectors, swept boxes, broad phases, questions about one
-// instant. `#include <kairos/ccd.hpp>`; see ccd/README.md.
+// instant, vertices and edges on straight lines. `#include <kairos/ccd.hpp>`; see ccd/README.md.
 #include "ccd/all_pairs.hpp"
 #include "ccd/bisection.hpp"
 #include "ccd/certified.hpp"
 #include "ccd/conservative_advancement.hpp"
 #include "ccd/contact_patch.hpp"
 #include "ccd/dynamic_tree.hpp"
+#include "ccd/linear/linear_impact.hpp"
 #include "ccd/nearest_points.hpp"
 #include "ccd/pair_overlap.hpp"
 #include "ccd/sat.hpp"

@@ -27,6 +27,9 @@ class LinearFilter {
   /// False where numbers are too large or too small for the bounds to hold: nothing else is asked
   /// then.
   [[nodiscard]] bool in_range() const { return in_range_; }
+  /// F_0, T_1, T_2, F_3 of equation (2), each off by at most `error_bound`, as is every value of f.
+  [[nodiscard]] const std::array<Real, 4>& coefficients() const { return f_; }
+  [[nodiscard]] double error_bound() const { return error_; }
   /// True: they are proven to stay further apart than the separation of the query.
   [[nodiscard]] bool never_coplanar(double separation) const;
   /// Whether they meet, without a separation; where, if so.

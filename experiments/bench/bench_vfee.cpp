@@ -86,8 +86,8 @@ Cost cost_of(const std::vector<LinearQuery>& queries, std::vector<LinearImpact>&
       each[i] = std::min(each[i], nanoseconds(Clock::now() - begin) - clock);
     }
   }
-  cost.mean = std::accumulate(chunks.begin(), chunks.end(), 0.0) /
-              static_cast<double>(queries.size());
+  cost.mean =
+      std::accumulate(chunks.begin(), chunks.end(), 0.0) / static_cast<double>(queries.size());
   const auto quantile = [&each](double part) {
     const auto at =
         each.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(each.size() - 1));

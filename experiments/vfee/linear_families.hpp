@@ -24,15 +24,16 @@ enum class LinearFamily : std::uint8_t {
   touch,          ///< meet at a given time on a vertex, on an edge or inside, exactly
   touch_ulp,      ///< the same, and one number moved by one ulp
   double_root,    ///< the volume touches zero and turns back, or misses by a little
+  cluster,        ///< three roots that are close
   triple_root,    ///< a power of one linear factor times others
   scaled_axes,    ///< a grid whose axes have units from 2^-1000 to 2^1000
   wild_exponents  ///< every number of any magnitude, subnormal to 1e300
 };
-inline constexpr int linear_families = 15;
+inline constexpr int linear_families = 16;
 inline constexpr std::array linear_family_names{
-    "general",   "close",       "grid",        "tiny grid",   "flat",
-    "on a line", "at rest",     "one moves",   "translation", "touch",
-    "touch ulp", "double root", "triple root", "scaled axes", "wild exponents"};
+    "general", "close",       "grid",        "tiny grid",     "flat",      "on a line",
+    "at rest", "one moves",   "translation", "touch",         "touch ulp", "double root",
+    "cluster", "triple root", "scaled axes", "wild exponents"};
 
 class LinearFamilies {
  public:
@@ -82,6 +83,9 @@ class LinearFamilies {
         break;
       case LinearFamily::double_root:
         double_root();
+        break;
+      case LinearFamily::cluster:
+        cluster();
         break;
       case LinearFamily::triple_root:
         triple_root();
@@ -242,6 +246,26 @@ class LinearFamilies {
                                     Vector3(whole(1), whole(1), 1)};
     const std::array<Vector3, 3> speed{Vector3(rate[0], 0, whole(1)), Vector3(0, rate[1], whole(1)),
                                        Vector3(0, 0, 0)};
+    place(at, speed, a);
+  }
+  /// A volume that is a product of t - a - b_i, by a triangular matrix.
+  void cluster() {
+    const double a = 0.125 * static_cast<double>(1 + random_.below(7));
+    const int scale = -static_cast<int>(4 + random_.below(44));
+    std::array<Vector3, 3> at;
+    std::array<Vector3, 3> speed;
+    for (int i = 0; i < 3; ++i) {
+      const auto row = static_cast<std::size_t>(i);
+      const double sign = random_.below(2) == 0 ? 1.0 : -1.0;
+      at[row] = Vector3::Zero();
+      speed[row] = Vector3::Zero();
+      at[row][i] = -sign * std::ldexp(whole(4), scale);
+      speed[row][i] = sign;
+      for (int k = i + 1; k < 3; ++k) {
+        at[row][k] = whole(3);
+        speed[row][k] = whole(1);
+      }
+    }
     place(at, speed, a);
   }
   void triple_root() {

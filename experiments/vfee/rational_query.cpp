@@ -1,5 +1,5 @@
 #include "ccd/linear/exact_integer.hpp"
-#include "core/csv.hpp"
+#include "core/reading/csv.hpp"
 #include "experiments/vfee/vfee_query.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "experiments/vfee/vfee_query.hpp"
 
-#include "core/csv.hpp"
 #include "core/error.hpp"
+#include "core/reading/csv.hpp"
 
 #include <fmt/format.h>
 

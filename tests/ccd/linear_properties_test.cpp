@@ -1,9 +1,10 @@
 // What must hold of every answer of vertex and face, edge and edge, whatever the question.
 #include "ccd/linear/exact_motion.hpp"
+#include "ccd/linear/linear_filter.hpp"
 #include "ccd/linear/linear_impact.hpp"
+#include "experiments/vfee/linear_families.hpp"
 #include "tests/allocations.hpp"
 #include "tests/catch.hpp"
-#include "experiments/vfee/linear_families.hpp"
 
 #include <cmath>
 #include <string>
@@ -64,6 +65,33 @@ TEST_CASE("linear: stages that stop early say what the integers say", "[ccd][lin
   for (const int count : stages) {
     CHECK(count > 100);  // each stage was asked
   }
+}
+
+TEST_CASE("linear: what rounding does is within the bound, and the bound within reason",
+          "[ccd][linear]") {
+  double largest = 0.0;  // of the bound
+  for (const LinearFamily f :
+       {LinearFamily::general, LinearFamily::close, LinearFamily::touch_ulp}) {
+    for (const LinearKind kind : {LinearKind::vertex_face, LinearKind::edge_edge}) {
+      LinearFamilies family(f, kind, seed);
+      for (int i = 0; i < 5000; ++i) {
+        const LinearQuery query = family.next();
+        const LinearFilter<double> rounded(query);
+        const LinearFilter<DoubleDouble> exact(query);  // to 1e-30
+        if (!rounded.in_range()) {
+          continue;
+        }
+        for (std::size_t k = 0; k < 4; ++k) {
+          const DoubleDouble error =
+              DoubleDouble(rounded.coefficients()[k]) - exact.coefficients()[k];
+          largest = std::max(largest, std::abs(error.high) / rounded.error_bound());
+        }
+      }
+    }
+  }
+  CAPTURE(largest);
+  CHECK(largest <= 1.0);
+  CHECK(largest >= 0.01);  // worst cases do not add up; a bound a hundred times too wide is a slip
 }
 
 TEST_CASE("linear: the bracket is a number or two adjacent ones in [0, 1]", "[ccd][linear]") {

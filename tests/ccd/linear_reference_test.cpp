@@ -5,8 +5,8 @@
 #include "tests/ccd/linear_reference.hpp"
 
 #include "ccd/linear/exact_motion.hpp"
-#include "tests/catch.hpp"
 #include "experiments/vfee/linear_families.hpp"
+#include "tests/catch.hpp"
 
 #include <cstdio>
 #include <cstdlib>

@@ -53,7 +53,7 @@ TEST_CASE("vfee answers rows with hit, the first time and the stage", "[vfee]") 
   REQUIRE(outcome.exit_code == 0);
   CHECK(outcome.out ==
         "id,hit,t_lo,t_hi,stage\n"
-        "through,1,0.5,0.5,integers\n"
+        "through,1,0.5,0.5,filter\n"
         "\"beside, never\",0,,,boxes\n"
         "above,0,,,boxes\n"
         "near,1,0.8571428571428571,0.8571428571428572,integers\n");
@@ -113,6 +113,6 @@ TEST_CASE("vfee names bad rows by their line, and goes on if asked to", "[vfee]"
   const Outcome outcome =
       vfee(header + falling("a", "nan", "") + falling("b", "-1", ""), {"--keep-going"});
   CHECK(outcome.exit_code == 2);
-  CHECK(outcome.out == "id,hit,t_lo,t_hi,stage\na,,,,invalid\nb,1,0.5,0.5,integers\n");
+  CHECK(outcome.out == "id,hit,t_lo,t_hi,stage\na,,,,invalid\nb,1,0.5,0.5,filter\n");
   CHECK(says(outcome, "stdin: 1 query is invalid"));
 }
