@@ -61,8 +61,8 @@ class EnergyLedger {
     lines_[static_cast<std::size_t>(line)].add(joules);
     flow_.add(std::abs(joules));
   }
-  /// Counts energy that only changed its form (kinetic to potential and back), for the scale of
-  /// roundoff.
+  /// Counts energy that only changed its form (kinetic to potential and back) or was taken up and
+  /// given back, for the scale of roundoff.
   void exchange(double joules) { flow_.add(std::abs(joules)); }
 
   [[nodiscard]] double kinetic() const { return kinetic_; }
@@ -72,7 +72,10 @@ class EnergyLedger {
   [[nodiscard]] double line(EnergyLine line) const {
     return lines_[static_cast<std::size_t>(line)].value();
   }
-  /// Sum of the magnitudes of all flows so far, J; what the bodies brought with them is the first.
+  /// Sum of the magnitudes of all flows so far, J: what the bodies brought with them; all that
+  /// forces and impacts turned from one form into another; and of each velocity and height that a
+  /// step or an impact replaced by another the energy that it held, which is rounded anew. A ball
+  /// that a wall sends back has given up all its energy and got it back.
   [[nodiscard]] double flow() const { return flow_.value(); }
   /// What no line explains; a test holds it below 8 eps of `flow()`.
   [[nodiscard]] double unexplained() const;

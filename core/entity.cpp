@@ -14,7 +14,9 @@ void Entity::give_momentum(const Body& /*self*/, BodyState& /*state*/, const Gif
 
 void Entity::give_force(Vector3& /*net_force*/, const Vector3& /*force*/) const {}
 
-Momentum Entity::belt(const Body& /*self*/, const BodyState& /*state*/) const { return {}; }
+Vector3 Entity::surface_velocity(const Body& /*self*/, const BodyState& /*state*/) const {
+  return Vector3::Zero();
+}
 
 Vector3 Entity::tracked_velocity(TrackerMemory& /*memory*/, const BodyState& truth,
                                  double /*interval*/) const {

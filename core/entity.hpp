@@ -89,9 +89,9 @@ class Entity {
   [[nodiscard]] virtual bool is_hand() const { return false; }
   /// Share of a hand's velocity that what it lets go of keeps.
   [[nodiscard]] virtual double release_share() const { return 1.0; }
-  /// Belt of a conveyor for the `newton` law: a mass and a velocity that exchange momentum with
-  /// the tangential motion along that velocity. Mass -1: no belt.
-  [[nodiscard]] virtual Momentum belt(const Body& self, const BodyState& state) const;
+  /// Velocity at which its surface runs along itself (a conveyor's belt), world frame, m/s. It
+  /// takes friction to carry anything: a law that knows none (`newton`) takes no notice of it.
+  [[nodiscard]] virtual Vector3 surface_velocity(const Body& self, const BodyState& state) const;
   /// Velocity that collisions see of a driven entity in the frame-based schemes; the default is
   /// the true one, the bat estimates it from positions (13.8). `interval`: the last frame, s.
   [[nodiscard]] virtual Vector3 tracked_velocity(TrackerMemory& memory, const BodyState& truth,

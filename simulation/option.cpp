@@ -20,6 +20,7 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double large = 1e300;
+constexpr double most_tolerance = 1e12;  // as `simulate` takes: no scene reaches farther
 constexpr double most_count = 1e15;
 
 std::string text_of(double value) { return fmt::format("{}", value); }
@@ -169,7 +170,7 @@ const std::array<Option, 20> table{{
     {"toi_tolerance",
      "tolerance",
      OptionKind::number,
-     {.lowest = 0.0, .highest = large, .unit = "m"},
+     {.lowest = 0.0, .highest = most_tolerance, .unit = "m"},
      "of times of impact; 0: 1e-9 of the smaller extent and the roundoff of the coordinates",
      [](const RunChoice& c) { return text_of(c.toi_tolerance); },
      [](RunChoice& c, double x, const std::string&) { c.toi_tolerance = x; }},
@@ -183,7 +184,7 @@ const std::array<Option, 20> table{{
     {"absolute_tolerance",
      "absolute-tolerance",
      OptionKind::number,
-     {.lowest = 0.0, .highest = large, .above = true, .unit = "m, m/s"},
+     {.lowest = 0.0, .highest = most_tolerance, .above = true, .unit = "m, m/s"},
      "of controlled integrators",
      [](const RunChoice& c) { return text_of(c.stepper.absolute_tolerance); },
      [](RunChoice& c, double x, const std::string&) { c.stepper.absolute_tolerance = x; }},

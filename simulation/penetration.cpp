@@ -61,9 +61,11 @@ void PenetrationProbe::for_each_near_pair(std::span<const BodyState> bodies,
   }
 }
 
-double PenetrationProbe::depth(BodyIndex a, BodyIndex b, std::span<const BodyState> bodies) const {
-  const Pose& pose_a = bodies[a].pose;
-  const Pose& pose_b = bodies[b].pose;
+double PenetrationProbe::depth(BodyIndex a, const Pose& pose_a, BodyIndex b,
+                               const Pose& pose_b) const {
+  if (!can_penetrate(a, b)) {
+    return 0.0;
+  }
   const Shape& shape_a = model_.shape(a);
   const Shape& shape_b = model_.shape(b);
   const double reach = bounding_radius(shape_a) + bounding_radius(shape_b);
@@ -81,7 +83,7 @@ std::optional<Penetration> PenetrationProbe::deepest(std::span<const BodyState> 
                                                      std::span<const char> in_hand) const {
   Penetration found;
   for_each_near_pair(bodies, [&](BodyIndex a, BodyIndex b) {
-    const double d = held(a, b, in_hand) ? 0.0 : depth(a, b, bodies);
+    const double d = held(a, b, in_hand) ? 0.0 : depth(a, bodies[a].pose, b, bodies[b].pose);
     if (d > found.depth) {
       found = {{a, b}, d};
     }
@@ -94,7 +96,7 @@ std::optional<Penetration> PenetrationProbe::first(std::span<const BodyState> bo
                                                    std::span<const char> in_hand) const {
   std::optional<Penetration> found;
   for_each_near_pair(bodies, [&](BodyIndex a, BodyIndex b) {
-    const double d = held(a, b, in_hand) ? 0.0 : depth(a, b, bodies);
+    const double d = held(a, b, in_hand) ? 0.0 : depth(a, bodies[a].pose, b, bodies[b].pose);
     if (d > 0.0) {
       found = Penetration{{a, b}, d};
     }

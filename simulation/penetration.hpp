@@ -34,13 +34,15 @@ class PenetrationProbe {
   /// hand (see `Frame::in_hand`) has no contacts and penetrates nothing.
   [[nodiscard]] std::optional<Penetration> deepest(std::span<const BodyState> bodies,
                                                    std::span<const char> in_hand = {}) const;
+  /// How deep two solids are inside each other, m; 0 if they are not, or nobody could part them.
+  [[nodiscard]] double depth(BodyIndex a, const Pose& pose_a, BodyIndex b,
+                             const Pose& pose_b) const;
   /// The first pair that penetrates.
   [[nodiscard]] std::optional<Penetration> first(std::span<const BodyState> bodies,
                                                  std::span<const char> in_hand = {}) const;
 
  private:
   [[nodiscard]] bool can_penetrate(BodyIndex a, BodyIndex b) const;
-  [[nodiscard]] double depth(BodyIndex a, BodyIndex b, std::span<const BodyState> bodies) const;
   template <typename Visit>
   void for_each_near_pair(std::span<const BodyState> bodies, const Visit& visit) const;
 

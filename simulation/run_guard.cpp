@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
+#include <string_view>
 
 namespace kairos {
 inline namespace simulation {
@@ -39,6 +41,7 @@ void RunGuard::frame(const Frame& frame) {
     check_finite(frame.bodies[i], i, frame.time);
     check_spin(frame.bodies[i], i, frame.time);
   }
+  check_energy(frame);
   last_.end = frame.time;
   last_.state.assign(frame.bodies.begin(), frame.bodies.end());
   last_.ledger = frame.ledger;
@@ -76,6 +79,34 @@ void RunGuard::check_finite(const BodyState& body, BodyIndex i, Instant t) const
     throw Broken{
         fmt::format("not finite: the state of '{}' at t = {} s", model_->body(i).name, t.seconds)};
   }
+}
+
+void RunGuard::check_energy(const Frame& frame) const {
+  const EnergyLedger& ledger = frame.ledger;
+  const auto need = [&](double joules, std::string_view name) {
+    if (std::isfinite(joules)) {
+      return;
+    }
+    std::size_t fastest = 0;
+    for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
+      if (frame.bodies[i].twist.linear.norm() > frame.bodies[fastest].twist.linear.norm()) {
+        fastest = i;
+      }
+    }
+    throw Broken{fmt::format(
+        "not finite: {} in the energy ledger at t = {} s is {} J; the fastest body is '{}', at "
+        "{:.3g} m/s",
+        name, frame.time.seconds, joules, model_->body(fastest).name,
+        frame.bodies[fastest].twist.linear.norm())};
+  };
+  need(ledger.kinetic(), "kinetic");
+  need(ledger.potential(), "potential");
+  for (std::size_t i = 0; i < energy_line_count; ++i) {
+    const auto line = static_cast<EnergyLine>(i);
+    need(ledger.line(line), to_string(line));
+  }
+  need(ledger.unexplained(), "unexplained");
+  need(ledger.flow(), "flow");
 }
 
 /// Infinite for bodies that are not watched.

@@ -10,8 +10,9 @@
 namespace kairos {
 inline namespace simulation {
 
-/// The last line of defence: NaN and infinity never travel, and no run goes on whose integrator has
-/// lost a body's rotation. Ends the run at the first of either, with the last frame that was whole.
+/// The last line of defence: NaN and infinity never travel, in states or in the energy ledger, and
+/// no run goes on whose integrator has lost a body's rotation. Ends the run at the first of either,
+/// with the last frame that was whole.
 ///
 /// A free body of angular momentum L turns with an energy of at most L^2 / (2 I), I its smallest
 /// principal moment. A frame that shows twice as much, with no torque since the last impact, is not
@@ -38,6 +39,7 @@ class RunGuard : public Recorder {
 
  private:
   void check_finite(const BodyState& body, BodyIndex i, Instant t) const;
+  void check_energy(const Frame& frame) const;
   void check_spin(const BodyState& body, BodyIndex i, Instant t);
   [[nodiscard]] double most_spin_energy(const BodyState& body, BodyIndex i) const;
 

@@ -19,11 +19,23 @@ double energy_error(const EnergyLedger& ledger) {
 }
 
 void RunMetrics::persist(Archive& archive) {
-  bool any = deepest.has_value();
-  BodyPair pair = deepest.value_or(BodyPair{});
-  archive(max_depth, any, pair.first, pair.second, time_of_max_depth, time_overlapping,
-          frames_overlapping, frames, final_energy_error, max_energy_error, energy_scale);
-  deepest = any ? std::optional(pair) : std::nullopt;
+  archive(in_frames, in_impacts, time_overlapping, frames_overlapping, frames, final_energy_error,
+          max_energy_error, energy_scale);
+}
+
+void RunMetrics::Deepest::look(double found, BodyPair of, Instant t) {
+  if (found > depth) {
+    depth = found;
+    pair = of;
+    time = t.seconds;
+  }
+}
+
+void RunMetrics::Deepest::persist(Archive& archive) {
+  bool any = pair.has_value();
+  BodyPair of = pair.value_or(BodyPair{});
+  archive(depth, any, of.first, of.second, time);
+  pair = any ? std::optional(of) : std::nullopt;
 }
 
 bool MetricsRecorder::persist(Archive& archive) {
@@ -46,11 +58,7 @@ void MetricsRecorder::frame(const Frame& frame) {
   shown_since_ = frame.time;
   if (deepest) {
     ++metrics_.frames_overlapping;
-    if (deepest->depth > metrics_.max_depth) {
-      metrics_.max_depth = deepest->depth;
-      metrics_.deepest = deepest->pair;
-      metrics_.time_of_max_depth = frame.time.seconds;
-    }
+    metrics_.in_frames.look(deepest->depth, deepest->pair, frame.time);
   }
 
   metrics_.energy_scale = std::max(
@@ -59,6 +67,14 @@ void MetricsRecorder::frame(const Frame& frame) {
   metrics_.max_energy_error =
       std::max(metrics_.max_energy_error, std::abs(metrics_.final_energy_error));
   ++metrics_.frames;
+}
+
+void MetricsRecorder::event(const Event& event) {
+  if (event.kind == EventKind::impact) {
+    metrics_.in_impacts.look(
+        probe_->depth(event.a, event.before_a.pose, event.b, event.before_b.pose),
+        {event.a, event.b}, event.time);
+  }
 }
 
 }  // namespace simulation

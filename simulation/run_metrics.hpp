@@ -8,12 +8,21 @@
 namespace kairos {
 inline namespace simulation {
 
-/// What a run got wrong, as a person sees it: measured on the drawn frames.
+/// What a run got wrong, as a person sees it: measured on the drawn frames, and at impacts.
 struct RunMetrics {
-  double max_depth = 0.0;           ///< deepest penetration of two solids in a drawn frame, m
-  std::optional<BodyPair> deepest;  ///< of which pair
-  double time_of_max_depth = 0.0;   ///< s
-  double time_overlapping = 0.0;    ///< for how long frames that show an overlap were shown, s
+  /// Deepest penetration of two solids.
+  struct Deepest {
+    double depth = 0.0;            ///< m
+    std::optional<BodyPair> pair;  ///< none: nothing penetrates
+    double time = 0.0;             ///< s
+
+    void look(double found, BodyPair of, Instant t);
+    void persist(Archive& archive);
+  };
+
+  Deepest in_frames;              ///< that are drawn
+  Deepest in_impacts;             ///< between frames too: where two were when they were handled
+  double time_overlapping = 0.0;  ///< for how long frames that show an overlap were shown, s
   std::int64_t frames_overlapping = 0;
   std::int64_t frames = 0;
   double final_energy_error = 0.0;  ///< J
@@ -23,6 +32,9 @@ struct RunMetrics {
   double energy_scale = 0.0;
 
   void persist(Archive& archive);
+  [[nodiscard]] const Deepest& deepest() const {
+    return in_impacts.depth > in_frames.depth ? in_impacts : in_frames;
+  }
   /// `joules` relative to the scale; 0 where there is no energy at all.
   [[nodiscard]] double relative(double joules) const {
     return energy_scale > 0.0 ? joules / energy_scale : 0.0;
@@ -39,6 +51,7 @@ class MetricsRecorder : public Recorder {
  public:
   void begin(const Model& model) override;
   void frame(const Frame& frame) override;
+  void event(const Event& event) override;
   bool persist(Archive& archive) override;
 
   [[nodiscard]] const RunMetrics& metrics() const { return metrics_; }

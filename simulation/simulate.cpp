@@ -21,6 +21,9 @@ namespace {
 /// A run of more frames than this would not end within a person's life.
 constexpr double most_frames = 1e13;
 
+/// No scene reaches farther: what is larger asks for nothing, and overflows where it is squared.
+constexpr double most_tolerance = 1e12;
+
 /// The names of a choice, resolved.
 struct Plan {
   std::shared_ptr<const Scheme> scheme;
@@ -37,6 +40,9 @@ void require(bool good, std::string_view key, double value, std::string_view all
 bool positive(double x) { return std::isfinite(x) && x > 0.0; }
 bool not_negative(double x) { return std::isfinite(x) && x >= 0.0; }
 
+/// Of a tolerance; infinite ones ask for steps as they are given.
+bool in_range(double x, double most) { return x >= 0.0 && (x <= most || std::isinf(x)); }
+
 void check_numbers(const RunChoice& choice) {
   const StepperOptions& stepper = choice.stepper;
   require(positive(choice.duration.value_or(1.0)), "duration", choice.duration.value_or(1.0),
@@ -45,12 +51,14 @@ void check_numbers(const RunChoice& choice) {
           "a finite number > 0 (s)");
   require(not_negative(choice.threshold), "threshold", choice.threshold,
           "a finite number > 0 (m), or 0: half of the smallest extent");
-  require(not_negative(choice.toi_tolerance), "tolerance", choice.toi_tolerance,
-          "a finite number > 0 (m), or 0: the detector's default");
-  require(stepper.relative_tolerance >= 0.0, "relative tolerance", stepper.relative_tolerance,
-          "a number >= 0");
-  require(stepper.absolute_tolerance >= 0.0, "absolute tolerance", stepper.absolute_tolerance,
-          "a number >= 0 (m, m/s)");
+  require(choice.toi_tolerance >= 0.0 && choice.toi_tolerance <= most_tolerance, "tolerance",
+          choice.toi_tolerance,
+          fmt::format("a number > 0 and <= {} (m), or 0: the detector's default", most_tolerance));
+  require(in_range(stepper.relative_tolerance, 1.0), "relative tolerance",
+          stepper.relative_tolerance, "a number >= 0 and <= 1");
+  require(in_range(stepper.absolute_tolerance, most_tolerance), "absolute tolerance",
+          stepper.absolute_tolerance,
+          fmt::format("a number >= 0 and <= {} (m, m/s)", most_tolerance));
   require(choice.max_substeps >= 1, "max substeps", static_cast<double>(choice.max_substeps),
           "a whole number >= 1");
 }

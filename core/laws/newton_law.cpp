@@ -1,10 +1,21 @@
 #include "core/laws/newton_law.hpp"
 
+#include <limits>
+#include <utility>
+
 namespace kairos {
 inline namespace core {
 namespace {
 
 bool is_free(const ImpactBody& body) { return body.inertia.mass > 0.0; }
+
+/// What the arm from an origin to a contact may be off by, m, as much as a contact patch takes for
+/// level: 1024 roundings of the coordinates that it was put together from, which were rotated,
+/// clipped, and reached by a flight whose direction was rounded.
+double arm_roundoff(const Vector3& point, const Vector3& origin) {
+  const double arm = (point - origin).lpNorm<1>();
+  return 512.0 * std::numeric_limits<double>::epsilon() * (arm + origin.lpNorm<Eigen::Infinity>());
+}
 
 /// A body as the law computes with it, written once for `double`, which is what acts, and for
 /// `long double`, which tells what rounding did.
@@ -19,29 +30,51 @@ struct Side {
         principal(body.inertia.principal.template cast<Real>()),
         orientation(state.pose.orientation.template cast<Real>()),
         arm(contact.point.template cast<Real>() - state.pose.position.template cast<Real>()),
+        unresolved(arm_roundoff(contact.point, state.pose.position)),
         v(state.twist.linear.template cast<Real>()),
         w(state.twist.angular.template cast<Real>()) {}
 
   [[nodiscard]] Vector at_contact() const { return v + w.cross(arm); }
 
-  /// I_W^-1 x, through the principal axes; 0 for a body that does not turn.
-  [[nodiscard]] Vector inverse_inertia(const Vector& x) const {
+  /// r x p in the body frame, along the principal axes, in two parts. What the coordinates cannot
+  /// tell from none is `unfelt`: it turns nothing, so that a symmetric patch does not.
+  struct Moment {
+    Vector felt;
+    Vector unfelt = Vector::Zero();
+  };
+  [[nodiscard]] Moment moment(const Vector& p) const {
+    Moment m{orientation.conjugate() * Vector(arm.cross(p))};
+    const Real none = unresolved * p.norm();
+    for (int k = 0; k < 3; ++k) {
+      if (m.felt[k] <= none && m.felt[k] >= -none) {
+        std::swap(m.felt[k], m.unfelt[k]);
+      }
+    }
+    return m;
+  }
+
+  /// I_W^-1 (r x p); 0 for a body that does not turn.
+  [[nodiscard]] Vector turned_by(const Vector& p) const {
     if (!turns) {
       return Vector::Zero();
     }
-    const Vector x_B = orientation.conjugate() * x;
-    return orientation * Vector(x_B.cwiseQuotient(principal));
+    return orientation * Vector(moment(p).felt.cwiseQuotient(principal));
+  }
+
+  /// The part of the contact's velocity along n that is rotation about levers that are not felt.
+  [[nodiscard]] Real unfelt(const Vector& n) const {
+    return turns ? moment(n).unfelt.dot(Vector(orientation.conjugate() * w)) : Real(0);
   }
 
   /// n^T K n, K the inverse inertia that the contact point feels: 1/m + n.((I^-1 (r x n)) x r).
   [[nodiscard]] Real compliance(const Vector& n) const {
-    return free ? Real(1) / mass + n.dot(inverse_inertia(arm.cross(n)).cross(arm)) : Real(0);
+    return free ? Real(1) / mass + n.dot(turned_by(n).cross(arm)) : Real(0);
   }
 
   void push(const Vector& impulse) {
     if (free) {
       v += impulse / mass;
-      w += inverse_inertia(arm.cross(impulse));
+      w += turned_by(impulse);
     }
   }
 
@@ -50,7 +83,8 @@ struct Side {
   Real mass;
   Vector principal;
   Eigen::Quaternion<Real> orientation;
-  Vector arm;  ///< from the origin to the contact
+  Vector arm;         ///< from the origin to the contact
+  double unresolved;  ///< what its coordinates may be off by, m
   Vector v;
   Vector w;
 };
@@ -59,7 +93,7 @@ struct Side {
 template <typename Real>
 typename Side<Real>::Vector collide(Side<Real>& a, Side<Real>& b,
                                     const typename Side<Real>::Vector& n, Real e, Real& loss) {
-  const Real approach = n.dot(b.at_contact() - a.at_contact());
+  const Real approach = n.dot(b.at_contact() - a.at_contact()) - (b.unfelt(n) - a.unfelt(n));
   const Real inverse_mass = a.compliance(n) + b.compliance(n);
   if (approach >= 0 || inverse_mass <= 0) {
     return Side<Real>::Vector::Zero();
@@ -74,22 +108,6 @@ typename Side<Real>::Vector collide(Side<Real>& a, Side<Real>& b,
 /// Work of a driven body on the other: impulse on the other times its own material velocity.
 double driven_work(const ImpactBody& driver, const Side<double>& side, const Vector3& impulse) {
   return driver.body.drive == nullptr ? 0.0 : impulse.dot(side.at_contact());
-}
-
-/// The belt under `carried` exchanges momentum with its motion along the belt.
-template <typename Real>
-Real carry(const ImpactBody& conveyor, const BodyState& belt_state, Side<Real>& carried) {
-  const Momentum belt = conveyor.body.entity->belt(conveyor.body, belt_state);
-  const Real speed = belt.velocity.template cast<Real>().norm();
-  if (belt.mass <= 0.0 || speed == 0 || !carried.free) {
-    return 0;
-  }
-  const typename Side<Real>::Vector along = belt.velocity.template cast<Real>() / speed;
-  const Real m = carried.mass;
-  const Real u = along.dot(carried.v);
-  const Real impulse = 2 * m * belt.mass / (m + belt.mass) * (speed - u);
-  carried.v += along * (impulse / m);
-  return impulse * (m * u + belt.mass * speed) / (m + belt.mass);
 }
 
 /// Kinetic energy of the body as computed minus that of its exact side, J.
@@ -127,7 +145,6 @@ class NewtonLaw final : public ImpactLaw {
     }
     // A driven body keeps its velocity.
     energy.driven_work = driven_work(a, of_a, impulse) + driven_work(b, of_b, -impulse);
-    energy.conveyor_and_hand = carry(a, a.state, of_b) + carry(b, b.state, of_a);
     a.state.twist = {of_a.v, of_a.w};
     b.state.twist = {of_b.v, of_b.w};
     return energy;
@@ -146,8 +163,6 @@ class NewtonLaw final : public ImpactLaw {
     if (collide<long double>(of_a, of_b, n, e, loss).isZero(0.0L)) {
       return 0.0;
     }
-    carry(a, before_a, of_b);
-    carry(b, before_b, of_a);
     return surplus(a.state, of_a) + surplus(b.state, of_b);
   }
 };

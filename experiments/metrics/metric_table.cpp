@@ -27,7 +27,7 @@ double end_position(O o) {
 std::vector<Metric> overlap_metrics() {
   return {
       {{"max_penetration", "m", "deepest overlap of two solids in a drawn frame"},
-       [](O o) { return o.frames->max_depth; },
+       [](O o) { return o.frames->in_frames.depth; },
        Needs::frames},
       {{"max_penetration_between", "m", "deepest overlap along the motions between frames"},
        [](O o) { return o.between->max_depth(); },

@@ -117,11 +117,12 @@ void add_metrics(JsonWriter& json, const FinishedRun& run) {
   const RunMetrics& metrics = run.metrics;
   const double final_error = energy_error(run.result.ledger);
   json.open("metrics");
-  json.number("max_depth", metrics.max_depth);
-  if (metrics.deepest) {
-    json.number("time_of_max_depth", metrics.time_of_max_depth);
-    json.text("deepest_a", run.model.body(metrics.deepest->first).name);
-    json.text("deepest_b", run.model.body(metrics.deepest->second).name);
+  const RunMetrics::Deepest& deepest = metrics.deepest();
+  json.number("max_depth", deepest.depth);
+  if (deepest.pair) {
+    json.number("time_of_max_depth", deepest.time);
+    json.text("deepest_a", run.model.body(deepest.pair->first).name);
+    json.text("deepest_b", run.model.body(deepest.pair->second).name);
   }
   json.number("time_overlapping", metrics.time_overlapping);
   json.count("frames_overlapping", metrics.frames_overlapping);
@@ -204,7 +205,7 @@ std::string summary_text(const FinishedRun& run) {
   line("integrator steps", fmt::format("{}, {} right-hand sides", run.result.cost.steps,
                                        run.result.cost.right_hand_sides));
   line("impacts", fmt::format("{}", run.result.cost.impacts));
-  line("deepest penetration", fmt::format("{:.6g} m", metrics.max_depth));
+  line("deepest penetration", fmt::format("{:.6g} m", metrics.deepest().depth));
   line("time overlapping", fmt::format("{:.6g} s", metrics.time_overlapping));
   const double final_error = energy_error(ledger);
   line("energy error",

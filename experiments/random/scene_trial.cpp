@@ -2,6 +2,7 @@
 
 #include "core/archive.hpp"
 #include "core/error.hpp"
+#include "core/impact_check.hpp"
 #include "core/reading/scene_reader.hpp"
 #include "simulation/penetration.hpp"
 #include "simulation/simulate.hpp"
@@ -49,9 +50,22 @@ class Watch : public Recorder {
     if (++events_ > most_events) {
       throw BrokenPromise{Fate::hang, fmt::format("{} events", events_), event.time.seconds};
     }
+    if (event.kind == EventKind::impact) {
+      check_impact(event);
+    }
   }
 
  private:
+  void check_impact(const Event& event) {
+    const double e = model_->body(event.a).restitution * model_->body(event.b).restitution;
+    if (const std::string broken = broken_restitution(event, e); !broken.empty()) {
+      throw BrokenPromise{Fate::law,
+                          fmt::format("'{}' and '{}': {}", model_->body(event.a).name,
+                                      model_->body(event.b).name, broken),
+                          event.time.seconds};
+    }
+  }
+
   void check_overlap(std::span<const BodyState> bodies, Instant t) {
     if (const auto found = probe_->first(bodies)) {
       throw BrokenPromise{
@@ -199,6 +213,8 @@ std::string_view to_string(Fate fate) {
       return "hang";
     case Fate::invalid:
       return "invalid";
+    case Fate::law:
+      return "law broken";
   }
   return "";
 }

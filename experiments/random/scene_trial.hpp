@@ -22,9 +22,10 @@ enum class Fate {
   ledger,      ///< energy that no line explains, beyond roundoff
   hang,        ///< more events than can be
   invalid,     ///< refused: the scene is wrong, which is the generator's mistake
+  law,         ///< an impact of two that part, or a rebound that breaks restitution
 };
 inline constexpr std::array all_fates{Fate::right, Fate::not_finite, Fate::overlap, Fate::ledger,
-                                      Fate::hang,  Fate::invalid,    Fate::stopped};
+                                      Fate::hang,  Fate::law,        Fate::invalid, Fate::stopped};
 [[nodiscard]] std::string_view to_string(Fate fate);
 
 struct Trial {

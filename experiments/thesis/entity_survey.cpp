@@ -84,7 +84,7 @@ std::vector<Answer> ask(const Entity& entity, const Body& self) {
   entity.give_force(net_force, {0.0, 1.0, 0.0});
   TrackerMemory memory;
   (void)entity.tracked_velocity(memory, state, 1.0 / 60.0);
-  const Momentum belt = entity.belt(self, state);
+  const Vector3 surface = entity.surface_velocity(self, state);
   std::string mass =
       momentum.mass == -1.0 ? "infinite mass" : fmt::format("m = {:g}", momentum.mass);
   return {
@@ -95,7 +95,7 @@ std::vector<Answer> ask(const Entity& entity, const Body& self) {
                                                 : "v → " + vector_text(given.twist.linear)},
       {"give_force", "GivePhysForce", net_force.isZero() ? "takes none" : "adds it"},
       {"gravity_direction", "Dynamics", vector_text(entity.gravity_direction())},
-      {"belt", "", belt.mass == -1.0 ? "none" : fmt::format("m = {:g}", belt.mass)},
+      {"surface_velocity", "", surface.isZero() ? "at rest" : vector_text(surface)},
       {"tracked_velocity", "SetInputVelocity", memory.primed ? "from positions" : "the true one"},
   };
 }

@@ -203,7 +203,7 @@ Errors errors_of(const MeasuredRun& run, const Reference& reference) {
     errors.missed += static_cast<std::int64_t>(times.size()) -
                      static_cast<std::int64_t>(std::min(times.size(), ours.size()));
   }
-  errors.penetration = run.metrics.max_depth;
+  errors.penetration = run.metrics.in_frames.depth;
   errors.energy = run.metrics.relative(run.metrics.max_energy_error);
   return errors;
 }

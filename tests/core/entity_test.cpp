@@ -155,10 +155,14 @@ TEST_CASE("conveyor: its belt runs along its own length", "[entity]") {
   const Body conveyor = make("conveyor", -1.0, {4.0, 2.5});
   BodyState state;
   state.pose.orientation = rotate({0, pi / 2, 0}, Quaternion::Identity());
-  const Momentum belt = conveyor.entity->belt(conveyor, state);
+  const Momentum belt = conveyor.entity->get_momentum(conveyor, state);
   CHECK(belt.mass == 4.0);
   CHECK((belt.velocity - Vector3(0, 0, -2.5)).norm() < 1e-15);
-  CHECK(make("wall", -1.0).entity->belt(conveyor, state).mass == -1.0);
+  CHECK(conveyor.entity->surface_velocity(conveyor, state) == belt.velocity);
+  Body plane = make("conveyor", -1.0, {4.0, 2.5});
+  plane.shape = HalfSpace{Vector3(1, 0, 0)};  // in its surface, not out of it
+  CHECK((plane.entity->surface_velocity(plane, {}) - Vector3(0, -2.5, 0)).norm() < 1e-15);
+  CHECK(make("wall", -1.0).entity->surface_velocity(conveyor, state) == Vector3::Zero());
 }
 
 TEST_CASE("anti-gravity pad: twice its G upwards, and no momentum", "[entity]") {

@@ -73,3 +73,33 @@ TEST_CASE("newton: what an elastic impact changes of the energy is its roundoff,
   }
   CHECK(largest > 1e-16);  // there was something to tell
 }
+
+TEST_CASE("newton: a lever that roundoff alone makes turns nothing, one that is there does",
+          "[law]") {
+  const auto law = make_newton_law();
+  Random random(20261122);
+  for (int trial = 0; trial < 500; ++trial) {
+    CAPTURE(trial);
+    Contact contact;
+    contact.normal = random.direction();
+    const double far = random.log_uniform(1.0, 1e6);  // from the origin, m
+    contact.point = far * random.direction();
+    const double reach = random.log_uniform(0.1, 10.0);
+    Party a = random_party(random, contact.point - reach * contact.normal);
+    Party b = random_party(random, contact.point + reach * contact.normal);
+    a.state.twist = {contact.normal, Vector3::Zero()};
+    b.state.twist = {-contact.normal, Vector3::Zero()};
+    // The centroid of a patch that is symmetric about the line of the centres, but for roundoff.
+    contact.point += 4.0 * std::numeric_limits<double>::epsilon() * far * random.direction();
+    Party c = b;
+    law->apply(contact, a.in_law(), b.in_law());
+    CHECK(a.state.twist.angular == Vector3::Zero());
+    CHECK(b.state.twist.angular == Vector3::Zero());
+    // An offset of 1e-8 of the coordinates is an offset.
+    const Vector3 aside = contact.normal.cross(random.direction());
+    contact.point += 1e-8 * far * aside;
+    a.state.twist = {contact.normal, Vector3::Zero()};
+    law->apply(contact, a.in_law(), c.in_law());
+    CHECK(c.state.twist.angular.norm() > 0.0);
+  }
+}

@@ -124,7 +124,7 @@ TEST_CASE("what recommend picks meets the bound on scenes held apart", "[recomme
       const Assessed& pick = assessment.methods[*found.pick];
       CAPTURE(pick.candidate.name);
       CHECK(error_against_exact(model, pick.candidate.choice) <= bound);
-      CHECK(pick.run.metrics.max_depth == 0.0);
+      CHECK(pick.run.metrics.deepest().depth == 0.0);
       CHECK(pick.run.work() >= work);  // a tighter bound is never cheaper
       work = pick.run.work();
       for (std::size_t i = 0; i < assessment.methods.size(); ++i) {

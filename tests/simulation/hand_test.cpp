@@ -229,3 +229,77 @@ TEST_CASE("hand: what it cannot hold is refused by name", "[hand][input]") {
   CHECK(reason({{"body.hand.drive", "{frequency = 1, amplitude = [1, 0, 0]}"}}).find("gesture") !=
         std::string::npos);
 }
+
+TEST_CASE("hand: what it lets go of inside a solid stops the run, and says of whom and how deep",
+          "[hand]") {
+  const std::string scene = R"(
+duration = 3.0
+frame = 0.25
+G = 0.0
+[[body]]
+name = "floor"
+entity = "wall"
+shape = "half-space"
+[[body]]
+name = "ball"
+entity = "ball"
+radius = 0.1
+mass = 1.0
+position = [0, 1, 0]
+[[body]]
+name = "hand"
+entity = "hand"
+radius = 0.05
+mass = 1.0
+holds = "ball"
+drive = {track = "hand.csv"}
+)";
+  const tests::TemporaryFolder folder;
+  const auto released_at = [&](double height, const char* then, const auto& choice) {
+    folder.file("hand.csv",
+                "t,x,y,z,gesture\n0,0,1,0,1\n1,0," + std::to_string(height) + ",0,0\n" + then);
+    return simulate(parse_scene(scene, folder.path("scene.toml")), choice);
+  };
+  for (const auto& choice : choices()) {
+    INFO(choice.method.scheme);
+    for (const char* then : {"1.1,0,-1.1,0,0\n2,5,-1.1,0,0\n", "1.1,0,-0.9,0,0\n2,5,-0.9,0,0\n"}) {
+      const auto sim = released_at(-1.0, then, choice);
+      INFO(sim.result.reason);
+      CHECK(sim.result.status == RunStatus::stopped);
+      CHECK(sim.result.end.seconds == 1.0);
+      CHECK(sim.result.reason.find("'ball'") != std::string::npos);
+      CHECK(sim.result.reason.find("1.1 m inside 'floor'") != std::string::npos);
+      // Of the hand itself with the floor the frame-based schemes tell: nobody moves those.
+      for (const Event& event : sim.trajectory.events()) {
+        CHECK_FALSE((event.kind == EventKind::impact && (event.a == 1 || event.b == 1)));
+      }
+    }
+    // Let go of where it touches the floor, at rest: nothing is wrong.
+    const auto laid = released_at(0.1, "1.1,0,1,0,0\n2,5,1,0,0\n", choice);
+    INFO(laid.result.reason);
+    CHECK(laid.result.status == RunStatus::completed);
+  }
+}
+
+TEST_CASE("hand: what drifts into a solid before it is clear of the hand stops the run too",
+          "[hand]") {
+  // Let go of at (0, 0), 0.9 m before the plate, by a large hand that goes on with it.
+  const tests::TemporaryFolder folder;
+  folder.file("hand.csv",
+              "t,x,y,z,gesture\n0,0,0,0,1\n0.5,0.5,0,0,1\n1,1,0,0,0\n2,2,0,0,0\n"
+              "3,2,9,0,0\n");
+  const Scene scene = parse_scene(
+      "duration = 4\nframe = 0.125\nG = 0\n[[body]]\nname = \"plate\"\nentity = \"wall\"\n"
+      "shape = \"half-space\"\nnormal = [-1, 0, 0]\nposition = [1.5, 0, 0]\n[[body]]\n"
+      "name = \"hand\"\nentity = \"hand\"\nradius = 0.2\nmass = 1\nholds = \"ball\"\n"
+      "drive = {track = \"hand.csv\"}\n[[body]]\nname = \"ball\"\nentity = \"ball\"\n"
+      "radius = 0.1\nmass = 1\n",
+      folder.path("scene.toml"));
+  for (const auto& choice : choices()) {
+    const auto sim = simulate(scene, choice);
+    INFO(choice.method.scheme << ": " << sim.result.reason);
+    CHECK(sim.result.status == RunStatus::stopped);
+    CHECK(sim.result.reason.find("inside 'plate'") != std::string::npos);
+    CHECK(sim.result.end.seconds > 2.0);
+  }
+}

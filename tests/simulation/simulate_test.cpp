@@ -6,6 +6,7 @@
 #include "core/reading/scene_reader.hpp"
 #include "simulation/registry.hpp"
 #include "simulation/run_metrics.hpp"
+#include "simulation/scene_library.hpp"
 #include "tests/catch.hpp"
 #include "tests/simulation/scenes.hpp"
 
@@ -147,6 +148,51 @@ angular_velocity = [3.0, 2.0, 1.0]
   }
 }
 
+TEST_CASE("the deepest penetration is that of impacts too, which no frame may show", "[metrics]") {
+  const Model model(drop());
+  MetricsRecorder metrics;
+  metrics.begin(model);
+  State bodies = model.initial_state();
+  bodies[1].pose.position.y() = 0.025;  // 0.075 m inside
+  Event event{.time = Instant{0.5}, .a = 0, .b = 1};
+  event.before_a = event.after_a = bodies[0];
+  event.before_b = event.after_b = bodies[1];
+  metrics.event(event);
+  bodies[1].pose.position.y() = 0.05;  // and 0.05 m in a frame
+  metrics.frame({1, Instant{1.0}, bodies, EnergyLedger{}});
+  const RunMetrics& found = metrics.metrics();
+  CHECK(found.in_frames.depth == Approx(0.05).epsilon(1e-12));
+  CHECK(found.deepest().depth == Approx(0.075).epsilon(1e-12));
+  CHECK(found.deepest().time == 0.5);
+  REQUIRE(found.deepest().pair);
+  CHECK(*found.deepest().pair == BodyPair{0, 1});
+}
+
+TEST_CASE("a run whose energy is not finite stops, though its states are", "[simulation]") {
+  Scene scene = read_scene(find_scene("flight"));
+  scene.bodies[0].initial.twist.linear = {4000.0, 0.0, 0.0};
+  RunChoice choice{.method = {"event-driven", "rk4", "certified", "newton"}};
+  choice.duration = 2.0 / 60.0;
+  const Simulation sim = simulate(scene, choice);
+  CHECK(sim.result.status == RunStatus::stopped);
+  CHECK(sim.result.reason.find("not finite") != std::string::npos);
+  CHECK(sim.result.reason.find("energy ledger") != std::string::npos);
+  CHECK(std::isfinite(sim.result.ledger.unexplained()));
+}
+
+TEST_CASE("tolerances have ranges: beyond what a scene can reach they ask for nothing",
+          "[simulation][input]") {
+  for (const double x : {1e308, 1e13, -1.0, std::nan("")}) {
+    RunChoice located, relative, absolute;
+    located.toi_tolerance = x;
+    relative.stepper.relative_tolerance = x;
+    absolute.stepper.absolute_tolerance = x;
+    for (const RunChoice& choice : {located, relative, absolute}) {
+      CHECK_THROWS_AS(simulate(drop(), choice), InputError);
+    }
+  }
+}
+
 TEST_CASE("metrics are what the drawn frames show", "[metrics]") {
   const Model model(drop());
   MetricsRecorder metrics;
@@ -171,8 +217,8 @@ TEST_CASE("metrics are what the drawn frames show", "[metrics]") {
   CHECK(found.frames == 4);
   CHECK(found.frames_overlapping == 2);
   CHECK(found.time_overlapping == 0.75);
-  CHECK(found.max_depth == Approx(0.05).epsilon(1e-12));  // roundoff of 0.1 - 0.05
-  CHECK(found.time_of_max_depth == 1.5);
+  CHECK(found.deepest().depth == Approx(0.05).epsilon(1e-12));  // roundoff of 0.1 - 0.05
+  CHECK(found.deepest().time == 1.5);
   CHECK(found.max_energy_error == 0.5);
   CHECK(found.final_energy_error == 0.25);
   CHECK(found.energy_scale == 5.0);

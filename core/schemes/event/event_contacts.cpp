@@ -1,10 +1,12 @@
 #include "core/schemes/event/event_contacts.hpp"
 
 #include "core/archive.hpp"
+#include "core/impact_check.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -42,10 +44,16 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double patience,
   if (!decided && approach >= 0.0 && patience > 0.0) {
     return look_again(a, b, t, patience);
   }
+  if (approach >= 0.0 && run_.law.info().needs_contact) {
+    return land(a, b, event.contact, t);  // in touch without approaching: no impact, none is told
+  }
   Vector3 unused_a = Vector3::Zero();  // solids that push (none does) would need fields
   Vector3 unused_b = Vector3::Zero();
   const ImpactEnergy energy =
       run_.exchange(event, motions_.now(a), motions_.now(b), unused_a, unused_b);
+  assert(!run_.law.info().needs_contact ||
+         broken_restitution(event, run_.model.body(a).restitution * run_.model.body(b).restitution)
+             .empty());
   run_.ledger.add(EnergyLine::restitution_loss, energy.restitution_loss);
   run_.ledger.add(EnergyLine::driven_work, energy.driven_work);
   run_.ledger.add(EnergyLine::conveyor_and_hand, energy.conveyor_and_hand);

@@ -1,5 +1,7 @@
 #include "core/schemes/event/event_hands.hpp"
 
+#include "core/schemes/shared/release.hpp"
+
 #include <utility>
 
 namespace kairos {
@@ -53,14 +55,27 @@ void EventHands::release(std::size_t grip, Instant t) {
   grasps_.set(grip, Grasp::leaving);
   motions_.launch(held, t);
   motions_.note(EventKind::released, hand, held, t);
-  predictor_.predict(held, t);
+  meet_again(grip, t);
 }
 
 void EventHands::clear(BodyIndex a, BodyIndex b, Instant t) {
   if (const auto grip = grasps_.leaving(a, b)) {
     grasps_.set(*grip, Grasp::open);
-    predictor_.predict(run_.model.grips()[*grip].held, t);
+    meet_again(*grip, t);
   }
+}
+
+/// What was let go of meets others from now on, unless it is inside one of them.
+void EventHands::meet_again(std::size_t grip, Instant t) {
+  const auto pose = [&](BodyIndex i) {
+    return run_.model.mobility(i) == Mobility::fixed ? motions_.now(i).pose
+                                                     : motions_.at(i, t).pose;
+  };
+  const Grip& of = run_.model.grips()[grip];
+  if (std::string why = why_not_released(run_, grasps_, of, t, pose); !why.empty()) {
+    return run_.stop(t, std::move(why));
+  }
+  predictor_.predict(of.held, t);
 }
 
 }  // namespace core

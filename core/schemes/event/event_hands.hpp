@@ -22,6 +22,7 @@ class EventHands {
   void grasp(std::size_t grip, Instant t);
   void carry(std::size_t grip, double share, Instant t);
   void release(std::size_t grip, Instant t);
+  void meet_again(std::size_t grip, Instant t);
 
   EventRun& run_;
   EventMotions& motions_;

@@ -1,5 +1,9 @@
 #include "core/schemes/frame/frame_hands.hpp"
 
+#include "core/schemes/shared/release.hpp"
+
+#include <utility>
+
 namespace kairos {
 inline namespace core {
 
@@ -16,9 +20,21 @@ void FrameHands::follow() {
       }
       grasps_.set(k, closed ? Grasp::holding : Grasp::leaving);
       motions_.set_carried(held, closed);
+      if (!closed) {
+        check_free(grip);
+      }
     } else if (grasps_.of(k) == Grasp::leaving && !run_.touch(hand, held)) {
       grasps_.set(k, Grasp::open);
+      check_free(grip);
     }
+  }
+}
+
+/// What was let go of has contacts from now on: not inside a solid.
+void FrameHands::check_free(const Grip& grip) {
+  const auto pose = [this](BodyIndex i) { return run_.bodies[i].pose; };
+  if (std::string why = why_not_released(run_, grasps_, grip, run_.time, pose); !why.empty()) {
+    run_.stop(std::move(why));
   }
 }
 

@@ -18,6 +18,7 @@ class FrameHands {
 
  private:
   void carry(const Grip& grip, double share);
+  void check_free(const Grip& grip);
 
   FrameRun& run_;
   FrameMotions& motions_;

@@ -153,6 +153,7 @@ void FrameMotions::propose(double h) {
     gather(mover);
     mover.booked = mover.states;
     mover.booked_until = 0.0;
+    mover.bent_at = 0.0;
     for (const BodyIndex i : mover.island.bodies) {
       paths_[i].clear();
     }
@@ -242,6 +243,7 @@ void FrameMotions::fly_on(BodyIndex i, double s, const State& meeting) {
   }
   mover.booked = mover.states;
   mover.booked_until = s;
+  mover.bent_at = s;
   if (s < proposed_) {
     fly(mover, s, proposed_);
   }

@@ -35,6 +35,11 @@ class FrameMotions {
   /// says (by body).
   void fly_on(BodyIndex i, double s, const State& meeting);
 
+  /// When a contact last bent the path of body i, s; what is before is settled. 0: none did.
+  [[nodiscard]] double bent_at(BodyIndex i) const {
+    return run_.model.is_free(i) ? movers_[run_.model.island_of(i)].bent_at : 0.0;
+  }
+
   /// Motion of body i over the last step.
   [[nodiscard]] Motion last_motion(BodyIndex i) const;
   /// A body was moved by a contact or a hand: its stepper begins anew with the next step.
@@ -65,6 +70,7 @@ class FrameMotions {
     std::vector<BodyState> reached{};  ///< scratch: where it ends
     std::vector<ReplayedStep> replayed{};
     double booked_until = 0.0;  ///< of the proposal, s
+    double bent_at = 0.0;       ///< last, in the proposal, s
 
     void persist(Archive& archive);
   };

@@ -74,11 +74,13 @@ double FrameWorld::largest_movement() const {
 
 void FrameWorld::accept(double s) {
   motions_.accept(s);
+  run_.tell_held_events();
   hands_.follow();
   run_.forget_given_forces();
 }
 
 void FrameWorld::bend(BodyIndex a, BodyIndex b, double s) {
+  run_.hold_events();
   const bool both = run_.model.is_free(a) && run_.model.is_free(b) &&
                     run_.model.island_of(a) != run_.model.island_of(b);
   const auto for_each_island = [&](const auto& act) {
@@ -109,7 +111,7 @@ void FrameWorld::bend(BodyIndex a, BodyIndex b, double s) {
 TimeOfImpact FrameWorld::time_of_impact(BodyIndex a, BodyIndex b, double until) {
   TimeOfImpact answer;
   int evaluations = 0;
-  for (double s = 0.0; s < until;) {
+  for (double s = settled_until(a, b); s < until;) {
     const double length = std::max(motions_.common_stretch(a, b, s, until), 0.0);
     ++run_.cost.toi_queries;
     answer = run_.detector.time_of_impact({run_.model.shape(a), motions_.path_motion(a, s)},
@@ -132,7 +134,7 @@ bool FrameWorld::swept_overlap(BodyIndex a, BodyIndex b) {
   if (grasps_.involve(a, b)) {
     return false;
   }
-  for (double s = 0.0; s < motions_.proposed();) {
+  for (double s = settled_until(a, b); s < motions_.proposed();) {
     const double length = std::max(motions_.common_stretch(a, b, s, motions_.proposed()), 0.0);
     ++run_.cost.overlap_tests;
     if (run_.detector.swept_overlap({run_.model.shape(a), motions_.path_motion(a, s)},

@@ -6,6 +6,7 @@
 #include "core/schemes/shared/frame_clock.hpp"
 #include "core/schemes/shared/grasps.hpp"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -39,9 +40,10 @@ class FrameWorld {
   /// At s of the proposal the two meet: handles them there and recomputes the rest of the proposal
   /// for the islands they belong to.
   void bend(BodyIndex a, BodyIndex b, double s);
-  /// When the two first meet within [0, s] of the proposal.
+  /// When the two first meet within [0, s] of the proposal, of which what is before the last bend
+  /// of either is settled: what has been told and booked there is not undone.
   [[nodiscard]] TimeOfImpact time_of_impact(BodyIndex a, BodyIndex b, double s);
-  /// Do the boxes that the two sweep over the proposal overlap (fig. 14)?
+  /// Do the boxes that the two sweep over the proposal, as far as it is open, overlap (fig. 14)?
   [[nodiscard]] bool swept_overlap(BodyIndex a, BodyIndex b);
   /// Would the two overlap at s of the proposal?
   [[nodiscard]] bool overlap_at(BodyIndex a, BodyIndex b, double s);
@@ -67,6 +69,9 @@ class FrameWorld {
   [[nodiscard]] RunResult result() &&;
 
  private:
+  [[nodiscard]] double settled_until(BodyIndex a, BodyIndex b) const {
+    return std::max(motions_.bent_at(a), motions_.bent_at(b));
+  }
   void persist(Archive& archive);
 
   FrameRun run_;

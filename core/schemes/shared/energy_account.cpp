@@ -37,6 +37,19 @@ Vector3 spin_gains(const BodyInertia& inertia, const BodyState& from, const Body
   return 0.5 * inertia.principal.cwiseProduct((w1 - w0).cwiseProduct(w1 + w0));
 }
 
+/// Energy that a body holds, after a change of its velocities, in those that changed, J.
+double renewed(const BodyInertia& inertia, const BodyState& from, const BodyState& to) {
+  double energy = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double v = to.twist.linear[axis];
+    energy += v != from.twist.linear[axis] ? 0.5 * inertia.mass * v * v : 0.0;
+  }
+  if (inertia.rotates && to.twist.angular != from.twist.angular) {
+    energy += spin_energy(inertia, to);
+  }
+  return energy;
+}
+
 void gather(const Island& island, std::span<const BodyState> bodies, std::vector<BodyState>& out) {
   out.clear();
   for (const BodyIndex i : island.bodies) {
@@ -74,9 +87,16 @@ double EnergyAccount::surplus(const Leg& leg) {
     const BodyState& from = leg.from[i];
     const BodyState& to = leg.to[i];
     const Vector3 displacement = to.pose.position - from.pose.position;
-    const double falls = model_.gravity_force(i).dot(displacement);
+    const Vector3& weight = model_.gravity_force(i);
+    const double falls = weight.dot(displacement);
     const double other = leg.other_force[i].dot(displacement);
     ledger_.exchange(falls);
+    ledger_.exchange(renewed(inertia, from, to));
+    for (int axis = 0; axis < 3; ++axis) {
+      if (displacement[axis] != 0.0) {
+        ledger_.exchange(weight[axis] * to.pose.position[axis]);
+      }
+    }
     if (other != 0.0) {
       ledger_.add(EnergyLine::field_work, other);
     }
@@ -193,10 +213,8 @@ void EnergyAccount::carried(const Island& island, Instant t, std::span<const Bod
 
 void EnergyAccount::struck(BodyIndex i, const BodyState& before, const BodyState& after) {
   const BodyInertia& inertia = model_.inertia(i);
-  ledger_.exchange(kinetic_gain(inertia.mass, before.twist.linear, after.twist.linear));
-  if (inertia.rotates) {
-    ledger_.exchange(spin_gains(inertia, before, after).cwiseAbs().sum());
-  }
+  ledger_.exchange(renewed(inertia, after, before));
+  ledger_.exchange(renewed(inertia, before, after));
 }
 
 void EnergyAccount::open(Instant t, std::span<const BodyState> bodies) {

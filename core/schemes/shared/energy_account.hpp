@@ -61,8 +61,8 @@ class EnergyAccount {
   void carried(const Island& island, Instant t, std::span<const BodyState> from,
                std::span<const BodyState> to);
 
-  /// An impact changed its velocities: what it turned into spin, out of it, or handed on is no gain
-  /// or loss, but it is a flow.
+  /// An impact changed its velocities: what it took up and gave back, turned into spin, out of it,
+  /// or handed on is no gain or loss, but it is a flow.
   void struck(BodyIndex i, const BodyState& before, const BodyState& after);
 
   /// A body was moved without time passing: work against gravity.

@@ -1,5 +1,6 @@
 #include "core/schemes/shared/scheme_run.hpp"
 
+#include <algorithm>
 #include <tuple>
 
 namespace kairos {
@@ -48,7 +49,21 @@ ImpactEnergy SchemeRun::exchange(Event& event, BodyState& a, BodyState& b, Vecto
 
 void SchemeRun::note(const Event& event) {
   ++cost.events;
-  recorder.event(event);
+  if (holds_events) {
+    held_events.push_back(event);
+  } else {
+    recorder.event(event);
+  }
+}
+
+void SchemeRun::tell_held_events() {
+  std::stable_sort(held_events.begin(), held_events.end(),
+                   [](const Event& a, const Event& b) { return a.time < b.time; });
+  for (const Event& event : held_events) {
+    recorder.event(event);
+  }
+  held_events.clear();
+  holds_events = false;
 }
 
 RunResult SchemeRun::result(State&& state) && {

@@ -6,6 +6,7 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace kairos {
 inline namespace core {
@@ -34,6 +35,9 @@ struct SchemeRun {
                         Vector3& force_b);
   /// An event at which no state jumps.
   void note(const Event& event);
+  /// Events that are found out of order are kept from here on, until they are told in order.
+  void hold_events() { holds_events = true; }
+  void tell_held_events();
   /// Hands what `write` puts into an archive to the keeper of checkpoints, if it wants one now;
   /// `last`: no other offer comes.
   template <typename Write>
@@ -59,6 +63,8 @@ struct SchemeRun {
   EnergyLedger ledger;
   EnergyAccount account;  ///< keeps the ledger
   Cost cost;
+  bool holds_events = false;
+  std::vector<Event> held_events;  ///< not told yet
 };
 
 }  // namespace core
