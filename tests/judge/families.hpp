@@ -13,6 +13,7 @@ struct Family {
   std::string_view what;
   Query (*make)(Random& random);
   bool parting = false;  ///< asks when they part, not when they meet
+  bool extreme = false;  ///< may be refused
 };
 
 /// In touch at the start, or close to it: families_touch.cpp.

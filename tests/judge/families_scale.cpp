@@ -199,9 +199,9 @@ constexpr Family families[] = {
 };
 
 constexpr Family extremes[] = {
-    {"huge", "lengths of 1e60 to 1e160 m", huge},
-    {"tiny", "lengths of 1e-160 to 1e-60 m", tiny},
-    {"subnormal", "lengths of 1e-318 to 1e-290 m", subnormal},
+    {"huge", "lengths of 1e60 to 1e160 m", huge, false, true},
+    {"tiny", "lengths of 1e-160 to 1e-60 m", tiny, false, true},
+    {"subnormal", "lengths of 1e-318 to 1e-290 m", subnormal, false, true},
 };
 
 }  // namespace

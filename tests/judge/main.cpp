@@ -63,28 +63,41 @@ class Session {
     }
   }
 
-  void take(const Query& query, bool parting, Tally& tally) {
+  void take(const Query& query, const Family& family, Tally& tally) {
     const double before = processor_time();
-    const TimeOfImpact answer = parting ? ask_parting(query, *certified_) : query.ask(*certified_);
+    TimeOfImpact answer;
+    try {
+      answer = family.parting ? ask_parting(query, *certified_) : query.ask(*certified_);
+    } catch (const std::invalid_argument&) {
+      tally.refuse(!family.extreme);
+      return;
+    }
     const double seconds = processor_time() - before;
     const Verdict verdict =
-        parting ? judge_parting(query, answer) : judge(query, answer, *certified_);
+        family.parting ? judge_parting(query, answer) : judge(query, answer, *certified_);
     tally.add(answer, verdict, seconds);
-    const bool noted = verdict.breaks_a_promise() || arguments_.index ||
-                       (arguments_.told && !verdict.faults().empty());
-    if (out_.is_open() && noted && kept_++ < arguments_.keep) {
-      out_ << csv_row(query)
-           << fmt::format(
-                  ",{},{:.3g},{:.17g},{:.3g},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{},"
-                  "{:.3f}\n",
-                  verdict.faults(), verdict.depth, verdict.when, verdict.rounding,
-                  to_string(answer.status), answer.t_lo, answer.t_hi, answer.gap, answer.normal.x(),
-                  answer.normal.y(), answer.normal.z(), answer.evaluations, 1e3 * seconds);
-    }
+    keep(query, answer, verdict, seconds);
   }
   void next_family() { kept_ = 0; }
 
  private:
+  void keep(const Query& query, const TimeOfImpact& answer, const Verdict& verdict,
+            double seconds) {
+    const bool noted = verdict.breaks_a_promise() || arguments_.index ||
+                       (arguments_.told && !verdict.faults().empty());
+    if (!out_.is_open() || !noted || kept_++ >= arguments_.keep) {
+      return;
+    }
+    const Vector3& n = answer.normal;
+    out_ << csv_row(query)
+         << fmt::format(
+                ",{},{:.3g},{:.17g},{:.3g},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{},{:"
+                ".3f}\n",
+                verdict.faults(), verdict.depth, verdict.when, verdict.rounding,
+                to_string(answer.status), answer.t_lo, answer.t_hi, answer.gap, n.x(), n.y(), n.z(),
+                answer.evaluations, 1e3 * seconds);
+  }
+
   const Arguments& arguments_;
   std::unique_ptr<ContactDetector> certified_ = ccd::make_certified();
   std::ofstream out_;
@@ -98,7 +111,7 @@ void show(const Tally& tally, const std::string& name) {
 Tally judge_file(const Arguments& arguments, Session& session) {
   Tally tally;
   for (const Query& query : read_queries(arguments.in)) {
-    session.take(query, false, tally);
+    session.take(query, {"file", "", nullptr}, tally);
   }
   return tally;
 }
@@ -112,7 +125,7 @@ Tally judge_family(const Arguments& arguments, const Family& family, std::uint64
     Query query = family.make(random);
     query.id = fmt::format("{}-{}-{}", family.name, arguments.seed, i);
     query.family = family.name;
-    session.take(query, family.parting, tally);
+    session.take(query, family, tally);
   }
   return tally;
 }

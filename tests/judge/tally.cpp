@@ -24,13 +24,19 @@ void Tally::add(const Tally& other) {
     faults_[i] += other.faults_[i];
   }
   broken_ += other.broken_;
+  refused_ += other.refused_;
   evaluations_.insert(evaluations_.end(), other.evaluations_.begin(), other.evaluations_.end());
   slowest_ = std::max(slowest_, other.slowest_);
 }
 
+void Tally::refuse(bool wrongly) {
+  ++refused_;
+  broken_ += wrongly ? 1 : 0;
+}
+
 std::string Tally::header() {
-  std::string text = fmt::format("{:18}{:>8}{:>8}{:>8}{:>8}{:>8} |", "class", "queries", "apart",
-                                 "impact", "overlap", "undec.");
+  std::string text = fmt::format("{:18}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8} |", "class", "queries",
+                                 "refused", "apart", "impact", "overlap", "undec.");
   for (std::size_t i = 0; i < fault_count; ++i) {
     text += fmt::format("{:>9}", to_string(static_cast<Fault>(i)));
   }
@@ -38,7 +44,7 @@ std::string Tally::header() {
 }
 
 std::string Tally::row(const std::string& name) const {
-  std::string text = fmt::format("{:18}{:>8}", name, evaluations_.size());
+  std::string text = fmt::format("{:18}{:>8}{:>8}", name, evaluations_.size() + refused_, refused_);
   for (const std::size_t count : statuses_) {
     text += fmt::format("{:>8}", count);
   }
