@@ -118,7 +118,7 @@ void look_at_coplanar(Contact& contact, LinearImpact& first) {
     return;
   }
   bool always_on_a_line = true;
-  for (std::size_t k = 0; k < 3; ++k) {
+  for (std::size_t k = 0; k < 3 && always_on_a_line; ++k) {
     for (const ExactPolynomial& p : contact.weights(k)) {
       always_on_a_line &= p.is_zero();
       look_at_roots(p, contact, first);

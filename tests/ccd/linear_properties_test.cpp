@@ -106,7 +106,7 @@ TEST_CASE("linear: the bracket is a number or two adjacent ones in [0, 1]", "[cc
 }
 
 TEST_CASE("linear: no order of the points, no axis and no power of two changes an answer",
-          "[ccd][linear]") {
+          "[ccd][linear][slow]") {
   for_all_families(150, [](const LinearQuery& query, LinearFamily family) {
     const LinearImpact impact = linear_impact(query);
     const bool face = query.kind == LinearKind::vertex_face;

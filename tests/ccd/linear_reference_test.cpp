@@ -72,7 +72,7 @@ std::uint64_t compare_families(std::uint64_t count, const Change& change) {
 }  // namespace
 
 TEST_CASE("linear: no false positive, no false negative, and the bracket of the reference",
-          "[ccd][linear][reference]") {
+          "[ccd][linear][reference][slow]") {
   const std::uint64_t count =
       from_environment("KAIROS_LINEAR_QUERIES", 410);  // of 24 that are not slow: 1e4
   const std::uint64_t hits = compare_families(count, [](LinearQuery&, std::uint64_t) {});
@@ -80,7 +80,7 @@ TEST_CASE("linear: no false positive, no false negative, and the bracket of the 
   CHECK(hits < 27 * count);
 }
 
-TEST_CASE("linear: the same with a separation", "[ccd][linear][reference]") {
+TEST_CASE("linear: the same with a separation", "[ccd][linear][reference][slow]") {
   const std::uint64_t count = from_environment("KAIROS_LINEAR_SEPARATIONS", 8);
   const std::uint64_t hits = compare_families(count, [](LinearQuery& query, std::uint64_t i) {
     constexpr std::array separations{0.5, 1.0, 0.1, 0x1p-40, 0.25, 2.0, 1e-300};

@@ -38,7 +38,7 @@ class Bytes {
     if (kind < 220) {
       return value * 0.25 * (1.0 + (kind - 190) * 0x1p-52);
     }
-    if (kind < 250) {
+    if (kind < 254) {
       return std::ldexp(value, (kind - 235) * 8);
     }
     std::uint64_t bits = static_cast<std::uint64_t>(value & 0xFF);
@@ -75,7 +75,7 @@ bool is_moderate(const LinearQuery& query) {
       }
     }
   }
-  return largest < least * 0x1p120;
+  return largest < least * 0x1p80;
 }
 
 LinearQuery read_query(Bytes& bytes) {
