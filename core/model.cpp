@@ -314,14 +314,17 @@ void Model::choose_motion() {
     const bool constant_rate = std::all_of(island.bodies.begin(), island.bodies.end(),
                                            [this](BodyIndex i) { return keeps_constant_rate(i); });
     const bool closed = options_.closed_form && parabola && constant_rate;
+    const bool tumbles = options_.closed_form && parabola && !constant_rate;
     closed_form_.push_back(closed);
+    tumbles_.push_back(tumbles);
     for (const BodyIndex i : island.bodies) {
-      tally.add(closed ? "closed form" : "integrated", body(i).name,
+      tally.add(closed || tumbles ? "closed form" : "integrated", body(i).name,
                 closed ? "only constant forces act on it; its rotation is left out or of constant "
                          "rate"
+                : tumbles ? "only constant forces act on it; it can tumble, as a free top between "
+                            "impacts: elliptic functions"
                 : !options_.closed_form ? "closed forms are switched off"
-                : !parabola             ? "a force depends on the state or on time"
-                                        : "it can tumble: its moments of inertia differ");
+                                        : "a force depends on the state or on time");
     }
   }
   decide(tally.decisions("motion"));

@@ -72,9 +72,12 @@ class Model {
   /// True if the island moves in closed form: a parabola, and a rotation that is left out or of
   /// constant rate.
   [[nodiscard]] bool closed_form(std::size_t island) const { return closed_form_[island]; }
+  /// True if it would but for a body that can tumble: a free top between impacts, which has a
+  /// closed form of its own (elliptic functions).
+  [[nodiscard]] bool tumbles(std::size_t island) const { return tumbles_[island]; }
   /// Name of the integrator that `auto` takes for this island.
   [[nodiscard]] std::string_view integrator(std::size_t island) const {
-    return closed_form_[island] ? "closed-form" : "dopri5";
+    return closed_form_[island] || tumbles_[island] ? "closed-form" : "dopri5";
   }
   /// Name of the broad phase that the scene needs.
   [[nodiscard]] std::string_view broad_phase() const { return broad_phase_; }
@@ -120,6 +123,7 @@ class Model {
   std::vector<std::size_t> island_of_;
   std::vector<Grip> grips_;
   std::vector<bool> closed_form_;
+  std::vector<bool> tumbles_;
   std::string_view broad_phase_ = "all-pairs";
   std::vector<Decision> decisions_;
 };

@@ -33,11 +33,20 @@ void ProgressBar::reach(std::size_t done) {
 
 void ProgressBar::show(std::size_t done) {
   done_ = done;
-  const auto now = std::chrono::steady_clock::now();
-  if (terminal_ && (now - drawn_ > std::chrono::milliseconds(100) || done_ == total_)) {
-    drawn_ = now;
+  if (due() || (terminal_ && done_ == total_)) {
+    drawn_ = std::chrono::steady_clock::now();
     draw();
   }
+}
+
+void ProgressBar::say(const std::string& note) {
+  const std::lock_guard lock(mutex_);
+  note_ = note;
+  show(done_);
+}
+
+bool ProgressBar::due() const {
+  return terminal_ && std::chrono::steady_clock::now() - drawn_ > std::chrono::milliseconds(100);
 }
 
 void ProgressBar::draw() const {
@@ -46,8 +55,8 @@ void ProgressBar::draw() const {
   const double elapsed = std::chrono::duration<double>(drawn_ - start_).count();
   const double left =
       elapsed * static_cast<double>(total_ - done_) / static_cast<double>(done_ == 0 ? 1 : done_);
-  fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {}/{} {:.0f} s left", label_, "", filled, "",
-             width - filled, done_, total_, left);
+  fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {}/{} {}{:.0f} s left", label_, "", filled, "",
+             width - filled, done_, total_, note_.empty() ? "" : note_ + ", ", left);
   std::fflush(stderr);
 }
 

@@ -20,12 +20,16 @@ class ProgressBar {
   void advance();
   /// So many are done.
   void reach(std::size_t done);
+  /// What the bar says besides, from now on; drawn at once where the last drawing is old enough.
+  void say(const std::string& note);
 
  private:
   void show(std::size_t done);
   void draw() const;
+  [[nodiscard]] bool due() const;
 
   std::string label_;
+  std::string note_;
   std::size_t total_;
   std::size_t done_ = 0;
   bool terminal_;

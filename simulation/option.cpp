@@ -80,7 +80,7 @@ constexpr Option name_option(std::string_view name, std::string_view help,
   return {name, name, OptionKind::name, {}, help, get, put};
 }
 
-const std::array<Option, 20> table{{
+const std::array<Option, 21> table{{
     name_option(
         "scheme", "when the world is looked at, and how contacts are kept",
         [](const RunChoice& c) { return c.method.scheme; },
@@ -166,6 +166,16 @@ const std::array<Option, 20> table{{
      [](const RunChoice& c) { return fmt::format("{}", c.max_substeps); },
      [](RunChoice& c, double x, const std::string&) {
        c.max_substeps = static_cast<std::int64_t>(x);
+     }},
+    {"max_events",
+     "max-events",
+     OptionKind::count,
+     {.lowest = 0.0, .highest = most_count},
+     "of event-driven in one frame; more stop the run; 0: 1,000,000, and 1000 a body where that is "
+     "more",
+     [](const RunChoice& c) { return fmt::format("{}", c.max_events); },
+     [](RunChoice& c, double x, const std::string&) {
+       c.max_events = static_cast<std::int64_t>(x);
      }},
     {"toi_tolerance",
      "tolerance",

@@ -20,6 +20,7 @@
 #include "core/schemes/frame/original.hpp"
 #include "core/schemes/frame/substepped.hpp"
 #include "integrators/catalogue/catalogue.hpp"
+#include "integrators/closed_form_or.hpp"
 #include "simulation/model_gaps.hpp"
 
 #include <fmt/format.h>
@@ -130,6 +131,9 @@ std::shared_ptr<const ImpactLaw> find_impact_law(std::string_view name) {
 IslandStepper find_integrator(std::string_view name, const StepperOptions& options) {
   if (name == "auto") {
     return [options](const Model& model, std::size_t island) {
+      if (model.tumbles(island)) {
+        return integrators::make_closed_form_or(find_entry("dopri5").make(options));
+      }
       return find_entry(model.integrator(island)).make(options);
     };
   }

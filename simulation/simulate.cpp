@@ -59,6 +59,8 @@ void check_numbers(const RunChoice& choice) {
   require(in_range(stepper.absolute_tolerance, most_tolerance), "absolute tolerance",
           stepper.absolute_tolerance,
           fmt::format("a number >= 0 and <= {} (m, m/s)", most_tolerance));
+  require(choice.max_events >= 0, "max events", static_cast<double>(choice.max_events),
+          "a whole number >= 1, or 0: the default");
   require(choice.max_substeps >= 1, "max substeps", static_cast<double>(choice.max_substeps),
           "a whole number >= 1");
 }
@@ -71,6 +73,7 @@ SchemeOptions scheme_options(const Scene& scene, const RunChoice& choice) {
   options.threshold = choice.threshold;
   options.equal_substeps = choice.equal_substeps;
   options.max_substeps = choice.max_substeps;
+  options.max_events = choice.max_events;
   options.toi_tolerance = choice.toi_tolerance;
   options.roundoff = choice.roundoff;
   return options;

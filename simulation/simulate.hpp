@@ -33,7 +33,8 @@ struct RunChoice {
   double threshold = 0.0;  ///< m, see `SchemeOptions`
   bool equal_substeps = false;
   std::int64_t max_substeps = 100000;
-  double toi_tolerance = 0.0;  ///< m
+  std::int64_t max_events = 0;  ///< of event-driven in one frame; 0: see `WorkBudget`
+  double toi_tolerance = 0.0;   ///< m
   bool roundoff = false;
   bool cold_restarts =
       false;  ///< steppers forget all they know at every impact, see the experiment

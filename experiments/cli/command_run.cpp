@@ -17,6 +17,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -25,20 +27,42 @@
 namespace kairos::experiments {
 namespace {
 
-/// Shows a person how far the run has come.
+/// Shows a person how far the run has come: frames, simulated time, and events a second, so that a
+/// run that crawls is seen to, between two frames as well.
 class ProgressRecorder : public Recorder {
  public:
   explicit ProgressRecorder(std::size_t frames) : frames_(frames), bar_("run", frames) {}
 
-  void frame(const Frame& /*frame*/) override {
+  void frame(const Frame& frame) override {
     if (drawn_ < frames_) {  // frame times that vary can be more than their mean tells
       ++drawn_;
       bar_.advance();
     }
+    say(frame.time);
+  }
+  void event(const Event& event) override {
+    ++events_;
+    say(event.time);
   }
   bool persist(Archive& /*archive*/) override { return true; }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
+  /// Ten times a second: events a second since the last time.
+  void say(Instant t) {
+    const double seconds = std::chrono::duration<double>(Clock::now() - said_).count();
+    if (seconds > 0.1) {
+      const auto news = static_cast<double>(events_ - said_events_);
+      bar_.say(fmt::format("t = {:.6g} s, {:.0f} events/s", t.seconds, news / seconds));
+      said_ = Clock::now();
+      said_events_ = events_;
+    }
+  }
+
+  Clock::time_point said_ = Clock::now();
+  std::int64_t events_ = 0;
+  std::int64_t said_events_ = 0;
   std::size_t frames_;
   std::size_t drawn_ = 0;
   ProgressBar bar_;

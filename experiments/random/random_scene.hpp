@@ -49,4 +49,10 @@ struct RandomScene {
 /// The scene of that number: a pure function of seed and index.
 [[nodiscard]] RandomScene random_scene(std::uint64_t seed, std::uint64_t index);
 
+/// What a person builds first, and what is hardest: bodies that touch at the start (rows, stacks,
+/// boxes on a floor), grooves, corners, inclines with a stopper, rows of balls that run into each
+/// other with little restitution, balls between walls that close. Moved, turned and scaled at
+/// random; solids touch, but do not overlap beyond roundoff.
+[[nodiscard]] RandomScene touching_scene(std::uint64_t seed, std::uint64_t index);
+
 }  // namespace kairos::experiments

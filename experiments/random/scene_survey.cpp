@@ -26,22 +26,27 @@ double thread_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-Tally run_block(std::uint64_t seed, std::uint64_t first, std::uint64_t count) {
+Tally run_block(const SceneSurvey& survey, std::uint64_t first, std::uint64_t count) {
   Tally tally;
   const double start = thread_seconds();
   for (std::uint64_t i = first; i < first + count; ++i) {
-    tally.add(i, try_scene(random_scene(seed, i)));
+    tally.add(i, try_scene(scene_of(survey, i)));
   }
   tally.seconds = thread_seconds() - start;
   return tally;
 }
 
 std::string survey_key(const SceneSurvey& survey) {
-  return fmt::format("kairos random-scenes 1 seed {} first {} program {}", survey.seed,
-                     survey.first, program_identity());
+  return fmt::format("kairos random-scenes 1{} seed {} first {} program {}",
+                     survey.touching ? " touching" : "", survey.seed, survey.first,
+                     program_identity());
 }
 
 }  // namespace
+
+RandomScene scene_of(const SceneSurvey& survey, std::uint64_t number) {
+  return survey.touching ? touching_scene(survey.seed, number) : random_scene(survey.seed, number);
+}
 
 Tally run_survey(const SceneSurvey& survey, const std::string& journal,
                  const std::function<void(const Tally&)>& progress) {
@@ -71,7 +76,7 @@ Tally run_survey(const SceneSurvey& survey, const std::string& journal,
     }
     const std::uint64_t begin = block * block_size;
     const std::uint64_t size = std::min(block_size, survey.count - begin);
-    Tally tally = run_block(survey.seed, survey.first + begin, size);
+    Tally tally = run_block(survey, survey.first + begin, size);
     if (finished && size == block_size) {
       Archive archive;
       archive(block, tally);

@@ -14,8 +14,12 @@ struct SceneSurvey {
   std::uint64_t count = 1000;
   std::uint64_t seed = 1;
   std::uint64_t first = 0;
+  bool touching = false;    ///< `touching_scene` instead of `random_scene`
   std::size_t threads = 0;  ///< 0: one per core; results do not depend on it
 };
+
+/// One of its scenes.
+[[nodiscard]] RandomScene scene_of(const SceneSurvey& survey, std::uint64_t number);
 
 /// Runs them in blocks. `journal`: a file that keeps finished blocks, from which a survey that was
 /// killed, or wants more scenes, goes on; empty: none. `progress` is told the tally so far after

@@ -2,50 +2,80 @@
 
 #include "tests/catch.hpp"
 
-#include <cmath>
-
 using namespace kairos;
 
-TEST_CASE("impacts: a body that hardly moves from one to the next creeps after 200", "[impacts]") {
+namespace {
+
+ImpactHistory::Impact with(BodyIndex partner, double approach, bool rest = false) {
+  return {.partner = partner, .approach = approach, .near = 1e-3, .tolerance = 1e-8, .rest = rest};
+}
+
+}  // namespace
+
+TEST_CASE("impacts: two that hardly move against each other creep after 200", "[impacts]") {
   ImpactHistory history;
   Instant t;
   // 1e-6 m/s for 1e-3 s: 1e-9 m from impact to impact. The first has none before it.
   for (int k = 0; k < 201; ++k, t = t + 1e-3) {
-    REQUIRE_FALSE(history.creeps(1e-6, 1e-8, t));
+    history.add(with(1, 1e-6), t);
+    REQUIRE_FALSE(history.creeps());
   }
-  CHECK(history.creeps(1e-6, 1e-8, t));
+  history.add(with(1, 1e-6), t);
+  CHECK(history.creeps());
   SECTION("one flight that goes farther, and the count begins anew") {
     t = t + 1.0;
-    CHECK_FALSE(history.creeps(1e-6, 1e-8, t));
-    CHECK_FALSE(history.creeps(1e-6, 1e-8, t + 1e-3));
+    history.add(with(1, 1e-6), t);
+    CHECK_FALSE(history.creeps());
+    history.add(with(1, 1e-6), t + 1e-3);
+    CHECK_FALSE(history.creeps());
   }
 }
 
-TEST_CASE("impacts: a gap that closes makes them ever faster, a steady one does not", "[impacts]") {
-  // The k-th impact at T (1 - q^k): all of them within T, however many.
-  const auto accelerates = [](double ratio, int impacts) {
-    ImpactHistory history;
-    Instant t;
-    for (int k = 0; k < impacts; ++k) {
-      t = t + 1e-3 * std::pow(ratio, k);
-      if (history.accelerates(1e-3, t)) {
-        return true;
-      }
-      (void)history.creeps(1.0, 0.0, t);
-    }
-    return false;
-  };
-  CHECK(accelerates(0.9995, 1 << 16));
-  CHECK_FALSE(accelerates(0.9995, 4095));  // too few to tell
-  CHECK_FALSE(accelerates(1.0, 1 << 16));
-  CHECK_FALSE(accelerates(1.0001, 1 << 14));
-}
-
-TEST_CASE("impacts: looks that get nowhere stall after 200", "[impacts]") {
+TEST_CASE("impacts: those on short ways hang together, with their partners", "[impacts]") {
   ImpactHistory history;
-  for (int k = 0; k < 200; ++k) {
-    REQUIRE_FALSE(history.stalls(1e-13));
+  Instant t;
+  for (const BodyIndex partner : {4, 7, 4, 7}) {
+    history.add(with(partner, 1.0), t);
+    t = t + 1e-4;  // 1e-4 m
   }
-  CHECK(history.stalls(1e-13));
-  CHECK_FALSE(history.stalls(1e-3));
+  CHECK(history.chain() == 4);
+  CHECK(history.partners() == std::vector<BodyIndex>{4, 7});
+  history.add(with(2, 1.0), t + 1e-2);
+  CHECK(history.chain() == 1);
+  CHECK(history.partners() == std::vector<BodyIndex>{2});
+}
+
+TEST_CASE("impacts: a body rests that meets one and the same too slowly, again and again",
+          "[impacts]") {
+  ImpactHistory history;
+  for (int k = 0; k < 3; ++k) {
+    history.add(with(1, 1e-7, true), Instant{} + k);
+    REQUIRE_FALSE(history.rests());
+  }
+  SECTION("four times") {
+    history.add(with(1, 1e-7, true), Instant{} + 3.0);
+    CHECK(history.rests());
+  }
+  SECTION("not where another comes in between") {
+    history.add(with(2, 1e-7, true), Instant{} + 3.0);
+    history.add(with(1, 1e-7, true), Instant{} + 4.0);
+    CHECK_FALSE(history.rests());
+  }
+  SECTION("not where one of them was fast") {
+    history.add(with(1, 1.0, false), Instant{} + 3.0);
+    history.add(with(1, 1e-7, true), Instant{} + 4.0);
+    CHECK_FALSE(history.rests());
+  }
+}
+
+TEST_CASE("impacts: looks that get nowhere stall after 200, whatever impacts come in between",
+          "[impacts]") {
+  ImpactHistory history;
+  Instant t;
+  for (int k = 0; k < 201; ++k, t = t + 1e-13) {
+    REQUIRE_FALSE(history.stalls(t, 1e-12));
+    history.add(with(1, 1.0), t);
+  }
+  CHECK(history.stalls(t, 1e-12));
+  CHECK_FALSE(history.stalls(t + 1e-3, 1e-12));
 }

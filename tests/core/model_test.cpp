@@ -84,13 +84,19 @@ TEST_CASE("model: every saving can be switched off", "[model]") {
   CHECK(decided(full, "motion", "integrated"));
 }
 
-TEST_CASE("model: what can tumble is integrated, what cannot is not", "[model]") {
+TEST_CASE("model: what can tumble is a free top, what cannot turns at a constant rate", "[model]") {
   CHECK_FALSE(Model(tumbling()).closed_form(0));
+  CHECK(Model(tumbling()).tumbles(0));
+  CHECK(Model(tumbling()).integrator(0) == "closed-form");
+  ModelOptions off;
+  off.closed_form = false;
+  CHECK(Model(tumbling(), off).integrator(0) == "dopri5");
   CHECK(Model(tumbling()).rotates(1));
   // A cube has no axis to prefer: its rate of turning is constant between impacts.
   Scene cube =
       read_scene(scenes + "spinning-box.toml", {{"body.box.half_extents", "[0.1, 0.1, 0.1]"}});
   CHECK(Model(cube).closed_form(0));
+  CHECK_FALSE(Model(cube).tumbles(0));
   // Alone, a box that spins about a principal axis keeps it; about another it does not.
   Scene alone = tumbling();
   alone.bodies.erase(alone.bodies.begin());

@@ -19,6 +19,9 @@ Agenda::Agenda(const Model& model)
 }
 
 void Agenda::push(Instant t, Due due, BodyIndex a, BodyIndex b, double patience, bool decided) {
+  if (heap_.size() >= crowded_) {
+    sweep_out();
+  }
   heap_.push_back({t, due, rank_[a], rank_[b], version_[a], version_[b], patience, decided});
   std::push_heap(heap_.begin(), heap_.end(), later);
 }
@@ -29,15 +32,24 @@ DueEvent Agenda::pop() {
   heap_.pop_back();
   const BodyIndex a = by_name_[entry.a];
   const BodyIndex b = by_name_[entry.b];
-  const bool stale = entry.version_a != version_[a] || entry.version_b != version_[b];
-  return {entry.time, entry.due, a, b, entry.patience, entry.decided, stale};
+  return {entry.time, entry.due, a, b, entry.patience, entry.decided, stale(entry)};
+}
+
+/// Where impacts follow each other much faster than what was predicted far ahead comes up, stale
+/// entries would pile up without end. What is taken even when it is stale stays.
+void Agenda::sweep_out() {
+  std::erase_if(heap_, [this](const Entry& entry) {
+    return stale(entry) && entry.due != Due::epoch_end && entry.due != Due::contact_begins;
+  });
+  std::make_heap(heap_.begin(), heap_.end(), later);
+  crowded_ = std::max(least_crowded, 2 * heap_.size());
 }
 
 void Agenda::Entry::persist(Archive& archive) {
   archive(time, due, a, b, version_a, version_b, patience, decided);
 }
 
-void Agenda::persist(Archive& archive) { archive(version_, heap_); }
+void Agenda::persist(Archive& archive) { archive(version_, heap_, crowded_); }
 
 }  // namespace core
 }  // namespace kairos

@@ -57,10 +57,14 @@ class Agenda {
   /// Whether a comes before b there.
   [[nodiscard]] bool before(BodyIndex a, BodyIndex b) const { return rank_[a] < rank_[b]; }
 
+  /// How many are due, stale ones included: never more than twice what is not, and some.
+  [[nodiscard]] std::size_t size() const { return heap_.size(); }
+
   /// The heap as it lies: what is due at the same instant keeps its order.
   void persist(Archive& archive);
 
  private:
+  static constexpr std::size_t least_crowded = 1024;
   struct Entry {
     Instant time;
     Due due = Due::impact;
@@ -74,12 +78,19 @@ class Agenda {
     void persist(Archive& archive);
     [[nodiscard]] auto key() const { return std::tuple(time.seconds, time.correction, due, a, b); }
   };
+  [[nodiscard]] bool stale(const Entry& entry) const {
+    return entry.version_a != version_[by_name_[entry.a]] ||
+           entry.version_b != version_[by_name_[entry.b]];
+  }
+
+  void sweep_out();
   static bool later(const Entry& x, const Entry& y) { return x.key() > y.key(); }
 
   std::vector<BodyIndex> by_name_;
   std::vector<std::uint32_t> rank_;
   std::vector<std::uint32_t> version_;
   std::vector<Entry> heap_;
+  std::size_t crowded_ = least_crowded;  ///< size at which stale entries are swept out
 };
 
 }  // namespace core

@@ -15,17 +15,19 @@ inline namespace core {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-/// Hops below this part of the extent may be those of a gap that closes.
-constexpr double small_hop = 1e-3;
-/// Hops below this part of the extent are taken for rest where restitution is below 1.
-constexpr double small_rest = 1e-10;
+/// Looks that go on by less than this part of the motions get nowhere.
+constexpr double least_progress = 1e-12;
 /// `contact_begins` of a contact that has been told.
 constexpr Instant told{-1.0, 0.0};
 
 }  // namespace
 
 EventContacts::EventContacts(EventRun& run, EventMotions& motions, EventPredictor& predictor)
-    : run_(run), motions_(motions), predictor_(predictor), bodies_(run.model.size()) {}
+    : run_(run),
+      motions_(motions),
+      predictor_(predictor),
+      accumulation_(run, motions),
+      bodies_(run.model.size()) {}
 
 // --- Impacts -----------------------------------------------------------------------------------
 
@@ -45,7 +47,13 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double patience,
     return look_again(a, b, t, patience);
   }
   if (approach >= 0.0 && run_.law.info().needs_contact) {
-    return land(a, b, event.contact, t);  // in touch without approaching: no impact, none is told
+    return touch(a, b, event.contact, t);
+  }
+  if (run_.detector.info().proves && event.contact.gap > predictor_.touching_gap(a, b)) {
+    return run_.stop(t,
+                     fmt::format("undecided: the detector '{}' tells {} to touch, which are {} "
+                                 "m apart; allowed: a larger --tolerance, or another detector",
+                                 run_.detector.info().name, run_.names(a, b), event.contact.gap));
   }
   Vector3 unused_a = Vector3::Zero();  // solids that push (none does) would need fields
   Vector3 unused_b = Vector3::Zero();
@@ -67,7 +75,30 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double patience,
                        "other at {} m/s",
                        run_.law.info().name, run_.names(a, b), -rebound));
   }
-  land(a, b, event.contact, t);
+  if (lands(a, b, event.contact, t)) {
+    return;
+  }
+  const std::string reason = accumulation_.after_impact(a, b, std::max(-approach, 0.0), t);
+  if (!reason.empty()) {
+    depart(a, b, t);  // what the last frame shows, and the ledger has booked
+    return run_.stop(t, reason);
+  }
+  relaunch(a, b, t);
+}
+
+/// In touch without approaching: no impact, and nothing that would be told. The two go on as they
+/// do, unless they come to rest.
+void EventContacts::touch(BodyIndex a, BodyIndex b, const Contact& contact, Instant t) {
+  if (lands(a, b, contact, t)) {
+    return;
+  }
+  if (accumulation_.stalls(a, b, t, least_progress * run_.epoch)) {
+    depart(a, b, t);
+    return run_.stop(t, fmt::format("accumulation: {} stay in touch; what lasts is kept for a ball "
+                                    "on one face only; {}",
+                                    run_.names(a, b), part_them));
+  }
+  relaunch(a, b, t);
 }
 
 /// Where the two touch at t: the centroid of the contact patch; where that does not approach, the
@@ -92,20 +123,18 @@ Contact EventContacts::contact_at(BodyIndex a, BodyIndex b, Instant t, double pa
 /// Answers that hardly get on, one after the other, would be asked for without end.
 void EventContacts::look_again(BodyIndex a, BodyIndex b, Instant t, double patience) {
   const double window = std::min({motions_.of(a).duration, motions_.of(b).duration, run_.epoch});
-  const BodyIndex mover = run_.model.is_free(a) ? a : b;
-  if (bodies_[mover].history.stalls(patience / window)) {
+  if (accumulation_.stalls(a, b, t, least_progress * window)) {
     return run_.stop(t, fmt::format("accumulation: whether {} touch is undecided again and again, "
-                                    "and time does not go on",
-                                    run_.names(a, b)));
+                                    "and time does not go on; {}",
+                                    run_.names(a, b), part_them));
   }
   run_.agenda.push(t + patience, Due::recheck, a, b);
 }
 
-/// After an impact: rest where the hop is too small to tell, stop where hops accumulate without a
-/// support, fly on otherwise.
-void EventContacts::land(BodyIndex a, BodyIndex b, const Contact& contact, Instant t) {
+/// Whether a ball comes to rest on a face: its hop is too small to tell.
+bool EventContacts::lands(BodyIndex a, BodyIndex b, const Contact& contact, Instant t) {
   const double e = run_.model.body(a).restitution * run_.model.body(b).restitution;
-  const double tolerance = rest_tolerance(a, b, e);
+  const double tolerance = accumulation_.rest_tolerance(a, b, e);
   for (const BodyIndex ball : {a, b}) {
     const BodyIndex surface = ball == a ? b : a;
     if (!run_.model.is_free(ball) || run_.model.is_free(surface)) {
@@ -121,39 +150,36 @@ void EventContacts::land(BodyIndex a, BodyIndex b, const Contact& contact, Insta
     }
     const double rebound = leaving_speed(ball, *support, t);
     const double pressing = motions_.pressing(ball, *support, t);
-    if (pressing > 0.0 && rebound * rebound <= 2.0 * pressing * tolerance) {
-      return settle(ball, *support, pressing, e, t);
+    const double held = motions_.pressing(ball, *support, t, true);
+    const double strongest = std::max(pressing, held);
+    if (!(strongest > 0.0 && rebound * rebound <= 2.0 * strongest * tolerance)) {
+      continue;
+    }
+    if (motions_.support(ball) && held > 0.0 && !leaves_for(ball, *support, tolerance, t)) {
+      depart(a, b, t);
+      run_.stop(t, fmt::format("accumulation: '{}' comes to rest between '{}' and '{}'; what lasts "
+                               "is kept for a ball on one face only; {}",
+                               run_.model.body(ball).name,
+                               run_.model.body(motions_.support(ball)->surface).name,
+                               run_.model.body(surface).name, part_them));
+      return true;
+    }
+    if (pressing > 0.0) {
+      settle(ball, *support, pressing, e, t);
+      return true;
     }
   }
-  for (const BodyIndex i : {a, b}) {
-    if (run_.model.is_free(i) && accumulates(i, tolerance, t)) {
-      depart(a, b, t);  // what the last frame shows, and the ledger has booked
-      return run_.stop(t, fmt::format("accumulation: impacts of {} follow each other without end, "
-                                      "and that is not a ball on a surface",
-                                      run_.names(a, b)));
-    }
-  }
-  relaunch(a, b, t);
+  return false;
 }
 
-/// How small a hop is taken for rest, m: with e < 1 the hops that would follow are summed up, so
-/// the height only has to be far below anything measured; otherwise only what the coordinates
-/// cannot resolve.
-double EventContacts::rest_tolerance(BodyIndex a, BodyIndex b, double e) const {
-  const double extent =
-      std::min(smallest_extent(run_.model.shape(a)), smallest_extent(run_.model.shape(b)));
-  const double coordinate = std::max(motions_.now(a).pose.position.cwiseAbs().maxCoeff(),
-                                     motions_.now(b).pose.position.cwiseAbs().maxCoeff());
-  return (e < 1.0 ? small_rest * extent : 0.0) + 4.0 * epsilon * coordinate;
-}
-
-bool EventContacts::accumulates(BodyIndex i, double tolerance, Instant t) {
-  const Shape& shape = run_.model.shape(i);
-  const Twist& twist = motions_.now(i).twist;
-  const double speed = twist.linear.norm() + twist.angular.norm() * bounding_radius(shape);
-  ImpactHistory& history = bodies_[i].history;
-  return history.accelerates(small_hop * smallest_extent(shape), t) ||
-         history.creeps(speed, tolerance, t);
+/// Whether a ball that comes to rest on another surface leaves the one that it has.
+bool EventContacts::leaves_for(BodyIndex ball, const Support& other, double tolerance, Instant t) {
+  const Support own = *motions_.support(ball);
+  motions_.set_support(ball, other);
+  const double pressing = motions_.pressing(ball, own, t, true);
+  motions_.set_support(ball, own);
+  const double away = leaving_speed(ball, own, t);
+  return pressing < 0.0 || (away > 0.0 && away * away > 2.0 * pressing * tolerance);
 }
 
 bool EventContacts::in_one_island(BodyIndex a, BodyIndex b) const {
@@ -230,12 +256,12 @@ void EventContacts::settle(BodyIndex ball, const Support& support, double pressi
   follow(ball, support, t);
   motions_.set_support(ball, support);
   motions_.launch(ball, t);
-  auto& [history, settled, contact_begins] = bodies_[ball];
-  const bool never_before = settled == Instant::never();
-  if (history.stalls(never_before ? 1.0 : (t - settled) / run_.epoch)) {
+  auto& [settled, contact_begins] = bodies_[ball];
+  if (settled != Instant::never() &&
+      accumulation_.stalls(ball, support.surface, t, least_progress * run_.epoch)) {
     return run_.stop(t, fmt::format("accumulation: {} leave and meet each other again and again, "
-                                    "and time does not go on",
-                                    run_.names(ball, support.surface)));
+                                    "and time does not go on; {}",
+                                    run_.names(ball, support.surface), part_them));
   }
   settled = t;
   contact_begins = t + still;
@@ -250,7 +276,7 @@ void EventContacts::resume_support(BodyIndex i, Instant t) {
   const Support support = *motions_.support(i);
   const double away = leaving_speed(i, support, t);
   const double pressing = motions_.pressing(i, support, t);
-  const double tolerance = rest_tolerance(i, support.surface, 0.0);
+  const double tolerance = accumulation_.rest_tolerance(i, support.surface, 0.0);
   if (pressing > 0.0 && away * away <= 2.0 * pressing * tolerance) {
     return follow(i, support, t);
   }
@@ -319,10 +345,8 @@ void EventContacts::cross_field(BodyIndex a, BodyIndex b, Instant t, bool enteri
   }
 }
 
-void EventContacts::Touching::persist(Archive& archive) {
-  archive(history, settled, contact_begins);
-}
-void EventContacts::persist(Archive& archive) { archive(bodies_); }
+void EventContacts::Touching::persist(Archive& archive) { archive(settled, contact_begins); }
+void EventContacts::persist(Archive& archive) { archive(accumulation_, bodies_); }
 
 }  // namespace core
 }  // namespace kairos

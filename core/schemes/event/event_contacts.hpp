@@ -1,8 +1,8 @@
 #pragma once
 
+#include "core/schemes/event/event_accumulation.hpp"
 #include "core/schemes/event/event_motions.hpp"
 #include "core/schemes/event/event_predictor.hpp"
-#include "core/schemes/event/impact_history.hpp"
 
 #include <vector>
 
@@ -32,7 +32,6 @@ class EventContacts {
 
  private:
   struct Touching {
-    ImpactHistory history;
     Instant settled = Instant::never();         ///< when it last came to rest on a surface
     Instant contact_begins = Instant::never();  ///< when its bounces have died down
 
@@ -41,13 +40,13 @@ class EventContacts {
 
   [[nodiscard]] Contact contact_at(BodyIndex a, BodyIndex b, Instant t, double patience) const;
   void look_again(BodyIndex a, BodyIndex b, Instant t, double patience);
-  void land(BodyIndex a, BodyIndex b, const Contact& contact, Instant t);
+  void touch(BodyIndex a, BodyIndex b, const Contact& contact, Instant t);
+  [[nodiscard]] bool lands(BodyIndex a, BodyIndex b, const Contact& contact, Instant t);
+  [[nodiscard]] bool leaves_for(BodyIndex ball, const Support& other, double tolerance, Instant t);
   void settle(BodyIndex ball, const Support& support, double pressing, double e, Instant t);
   void resume_support(BodyIndex i, Instant t);
   void follow(BodyIndex ball, const Support& support, Instant t);
   [[nodiscard]] double leaving_speed(BodyIndex ball, const Support& support, Instant t) const;
-  [[nodiscard]] bool accumulates(BodyIndex i, double tolerance, Instant t);
-  [[nodiscard]] double rest_tolerance(BodyIndex a, BodyIndex b, double e) const;
   void depart(BodyIndex a, BodyIndex b, Instant t);
   void relaunch(BodyIndex a, BodyIndex b, Instant t);
   [[nodiscard]] bool in_one_island(BodyIndex a, BodyIndex b) const;
@@ -55,6 +54,7 @@ class EventContacts {
   EventRun& run_;
   EventMotions& motions_;
   EventPredictor& predictor_;
+  EventAccumulation accumulation_;
   std::vector<Touching> bodies_;
 };
 

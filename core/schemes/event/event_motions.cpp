@@ -111,6 +111,7 @@ void EventMotions::next_segment(Flow& flow, Instant t) {
     run_.stop(t, "integrator: " + std::string(step.reason));
     return;
   }
+  flow.exact = flow.stepper->info().order == 0;  // a closed form may have given up
   flow.stepper->dense_output(flow.motions);
   for (std::size_t k = 0; k < flow.motions.size(); ++k) {
     set_motion(flow.island.bodies[k], flow.motions[k]);
@@ -213,11 +214,25 @@ Vector3 EventMotions::acting_force(BodyIndex i, Instant t, const BodyState& stat
   return wrench.force;
 }
 
-double EventMotions::pressing(BodyIndex ball, const Support& support, Instant t) const {
-  const Motion& under = of(support.surface);
-  const double s = std::min(t - under.start, under.duration);
-  return support.normal.dot(under.acceleration(s) -
-                            acting_force(ball, t, now_[ball]) / run_.model.inertia(ball).mass);
+double EventMotions::pressing(BodyIndex ball, const Support& support, Instant t, bool held) const {
+  const auto surface_acceleration = [&](BodyIndex surface) {
+    const Motion& under = of(surface);
+    return under.acceleration(std::min(t - under.start, under.duration));
+  };
+  Vector3 own = acting_force(ball, t, now_[ball]) / run_.model.inertia(ball).mass;
+  if (const std::optional<Support>& other = bodies_[ball].support; held && other) {
+    own += other->normal * other->normal.dot(surface_acceleration(other->surface) - own);
+  }
+  return support.normal.dot(surface_acceleration(support.surface) - own);
+}
+
+bool EventMotions::is_damped(BodyIndex i) const {
+  if (!run_.model.is_free(i)) {
+    return false;
+  }
+  const auto& forces = run_.model.islands()[run_.model.island_of(i)].forces;
+  return std::any_of(forces.begin(), forces.end(),
+                     [](const Force* force) { return !force->conservative(); });
 }
 
 void EventMotions::set_forces(Flow& flow) {
@@ -267,8 +282,9 @@ void EventMotions::book(Flow& flow, Instant t) {
     now_[i] = whole ? flow.states[k] : at(i, t);
   }
   const double roundoff = run_.options.roundoff ? new_roundoff(flow, t) : 0.0;
-  const Leg leg{flow.island,         booked_, now_, field_forces_, flow.exact, roundoff,
-                riding_work(flow, t)};
+  // What the motion of a top is off its closed form is truncation: polynomials are fitted to it.
+  const bool exact = flow.exact && !run_.model.tumbles(run_.model.island_of(first));
+  const Leg leg{flow.island, booked_, now_, field_forces_, exact, roundoff, riding_work(flow, t)};
   if (flow.island.forces.empty()) {
     run_.account.leg(leg);
   } else {
@@ -335,7 +351,7 @@ std::int64_t EventMotions::evaluations() const {
 void EventMotions::MovingBody::persist(Archive& archive) { archive(motion, support, fields); }
 
 void EventMotions::Flow::persist(Archive& archive) {
-  archive(island.constant_force, carried, states, launched, roundoff, booked);
+  archive(island.constant_force, exact, carried, states, launched, roundoff, booked);
   stepper->persist(archive);
 }
 

@@ -61,9 +61,13 @@ class EventMotions {
   /// The fields that body i is in; they act from the next launch on.
   [[nodiscard]] std::vector<BodyIndex>& fields(BodyIndex i) { return bodies_[i].fields; }
   [[nodiscard]] bool is_in_field(BodyIndex i, BodyIndex field) const;
+  /// Whether a force takes energy from it: hops die down whatever the restitution.
+  [[nodiscard]] bool is_damped(BodyIndex i) const;
   /// What surface and forces do to a ball on it, m/s^2: a_s.n - F.n / m, positive while it is
-  /// pressed; the ball alone in its island and at `now`.
-  [[nodiscard]] double pressing(BodyIndex ball, const Support& support, Instant t) const;
+  /// pressed; the ball alone in its island and at `now`. `held`: the surface that supports it
+  /// already carries what it can.
+  [[nodiscard]] double pressing(BodyIndex ball, const Support& support, Instant t,
+                                bool held = false) const;
 
   /// The ledger follows the island of i up to t; `now` is then the state there.
   void book(BodyIndex i, Instant t) { book(flow_of(i), t); }

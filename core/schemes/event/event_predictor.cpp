@@ -2,8 +2,11 @@
 
 #include "core/archive.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace kairos {
 inline namespace core {
@@ -122,11 +125,74 @@ void EventPredictor::predict_pair(BodyIndex i, BodyIndex j, Instant t) {
   }
 }
 
-void EventPredictor::predict_meeting(BodyIndex a, BodyIndex b, Instant t, double duration) {
+TimeOfImpact EventPredictor::time_of_impact(BodyIndex a, BodyIndex b, Instant t, double duration) {
   const TimeOfImpact toi = run_.detector.time_of_impact(motions_.moving(a), motions_.moving(b),
                                                         {t, duration}, run_.options.toi_tolerance);
   ++run_.cost.toi_queries;
   run_.cost.toi_evaluations += toi.evaluations;
+  return toi;
+}
+
+double EventPredictor::touching_gap(BodyIndex a, BodyIndex b) const {
+  double coordinates = 0.0;
+  double radii = 0.0;
+  double errors = 0.0;
+  double extent = std::numeric_limits<double>::infinity();
+  for (const BodyIndex i : {a, b}) {
+    const Motion& motion = motions_.of(i);
+    const double s = std::min(motion.duration, run_.epoch);
+    double reached = 0.0;
+    for (int k = motion.position.degree(); k >= 0; --k) {
+      reached = reached * s + motion.position[k].lpNorm<Eigen::Infinity>();
+    }
+    const double radius = bounding_radius(run_.model.shape(i));
+    coordinates += reached;
+    radii += std::isfinite(radius) ? radius : 0.0;
+    errors += motion.error_radius;
+    extent = std::min(extent, smallest_extent(run_.model.shape(i)));
+  }
+  const double asked = run_.options.toi_tolerance;
+  // The roundoff that the detectors' default tolerance has: 704 u of what coordinates reach, u half
+  // of epsilon.
+  const double roundoff = 352.0 * std::numeric_limits<double>::epsilon() * (coordinates + radii);
+  return 2.0 * ((asked > 0.0 ? asked : 1e-9 * extent) + roundoff + errors);
+}
+
+/// Undecided, and far from touch: the detector ran out of work. What it proved free of contact is
+/// left behind, and what follows is asked in shorter windows.
+void EventPredictor::look_nearer(BodyIndex a, BodyIndex b, Instant t, double duration,
+                                 TimeOfImpact toi) {
+  constexpr double worth_it = 1.0 / 16.0;  // of the window
+  constexpr int most_tries = 40;           // to 1e-24 of the window
+  const double allowed = touching_gap(a, b);
+  for (int k = 0; k < most_tries; ++k) {
+    const bool touching = toi.status != ToiStatus::undecided || toi.gap <= allowed;
+    if (touching && toi.status != ToiStatus::separated) {
+      return push_meeting(a, b, t, toi);
+    }
+    const double free = toi.status == ToiStatus::separated ? duration : toi.t_lo;
+    if (free >= worth_it * duration) {
+      return run_.agenda.push(t + free, Due::recheck, a, b);
+    }
+    duration *= 0.25;
+    toi = time_of_impact(a, b, t, duration);
+  }
+  run_.stop(t,
+            fmt::format("undecided: whether {} meet, {} m apart, in the next {} s: the detector "
+                        "'{}' ran out of work; allowed: a slower rotation, a larger --tolerance, "
+                        "or another detector",
+                        run_.names(a, b), toi.gap, duration, run_.detector.info().name));
+}
+
+/// A field is entered where contact is proven; solids never get that far.
+void EventPredictor::push_meeting(BodyIndex a, BodyIndex b, Instant t, const TimeOfImpact& toi) {
+  const bool field = run_.model.is_field(a) || run_.model.is_field(b);
+  run_.agenda.push(t + (field ? toi.t_hi : toi.t_lo), field ? Due::field_entered : Due::impact, a,
+                   b, toi.t_hi - toi.t_lo, toi.status == ToiStatus::impact);
+}
+
+void EventPredictor::predict_meeting(BodyIndex a, BodyIndex b, Instant t, double duration) {
+  const TimeOfImpact toi = time_of_impact(a, b, t, duration);
   if (!run_.model.is_free(a) && !run_.model.is_free(b)) {
     return;  // asked all the same where nothing is left out; nothing can come of it
   }
@@ -134,12 +200,13 @@ void EventPredictor::predict_meeting(BodyIndex a, BodyIndex b, Instant t, double
   switch (toi.status) {
     case ToiStatus::separated:
       return;
-    case ToiStatus::impact:
     case ToiStatus::undecided:
-      // A field is entered where contact is proven; solids never get that far.
-      return run_.agenda.push(t + (field ? toi.t_hi : toi.t_lo),
-                              field ? Due::field_entered : Due::impact, a, b, toi.t_hi - toi.t_lo,
-                              toi.status == ToiStatus::impact);
+      if (toi.gap > touching_gap(a, b)) {
+        return look_nearer(a, b, t, duration, toi);
+      }
+      return push_meeting(a, b, t, toi);
+    case ToiStatus::impact:
+      return push_meeting(a, b, t, toi);
     case ToiStatus::overlapping:
       return field ? run_.agenda.push(t, Due::field_entered, a, b)
                    : leave_overlap(a, b, t, duration);
@@ -158,8 +225,9 @@ void EventPredictor::leave_overlap(BodyIndex a, BodyIndex b, Instant t, double d
   }
   const TimeOfImpact toi = time_of_separation(a, b, t, duration);
   if (toi.status == ToiStatus::overlapping) {
-    return run_.stop(t, "accumulation: " + run_.names(a, b) +
-                            " stay in contact, and that is not a ball on a surface");
+    return run_.stop(t, fmt::format("accumulation: {} stay in contact; what lasts is kept for a "
+                                    "ball on one face only; {}",
+                                    run_.names(a, b), part_them));
   }
   run_.agenda.push(t + toi.t_hi, Due::recheck, a, b);
 }

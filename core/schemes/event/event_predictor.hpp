@@ -24,6 +24,11 @@ class EventPredictor {
   void predict(BodyIndex i, Instant t, BodyIndex except);
   void predict_pair(BodyIndex i, BodyIndex j, Instant t);
 
+  /// Beyond this gap two bodies do not touch, m: twice what a detector may leave between them (its
+  /// tolerance, the roundoff of the coordinates that their motions reach, their error radii). No
+  /// impact law acts across more.
+  [[nodiscard]] double touching_gap(BodyIndex a, BodyIndex b) const;
+
   void persist(Archive& archive);
 
  private:
@@ -38,6 +43,9 @@ class EventPredictor {
   void open_window(BodyIndex i, Instant t);
   [[nodiscard]] double window_length(BodyIndex i, Instant t);
   void predict_meeting(BodyIndex a, BodyIndex b, Instant t, double duration);
+  [[nodiscard]] TimeOfImpact time_of_impact(BodyIndex a, BodyIndex b, Instant t, double duration);
+  void push_meeting(BodyIndex a, BodyIndex b, Instant t, const TimeOfImpact& toi);
+  void look_nearer(BodyIndex a, BodyIndex b, Instant t, double duration, TimeOfImpact toi);
   void predict_parting(BodyIndex a, BodyIndex b, Instant t, double duration, Due due);
   void leave_overlap(BodyIndex a, BodyIndex b, Instant t, double duration);
   [[nodiscard]] TimeOfImpact time_of_separation(BodyIndex a, BodyIndex b, Instant t,

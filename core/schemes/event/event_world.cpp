@@ -44,6 +44,10 @@ void EventWorld::take() {
   if (event.stale) {
     return;
   }
+  run_.spend(event);
+  if (stopped()) {
+    return;
+  }
   run_.time = event.time;
   switch (event.due) {
     case Due::segment_end:
@@ -118,6 +122,7 @@ bool EventWorld::draw() {
 
 /// The frame that follows the one drawn last; false where the run ends.
 bool EventWorld::open_frame() {
+  run_.budget.begin_frame();
   clock_.look(run_.time);
   if (clock_.whole()) {
     run_.offer_checkpoint(clock_.last(), [this](Archive& archive) { persist(archive); });
@@ -132,8 +137,8 @@ RunResult EventWorld::result() && {
 
 /// What a run needs to go on, between a frame that was drawn and the next.
 void EventWorld::persist(Archive& archive) {
-  archive(run_.time, run_.epoch_end, clock_, drawn_, grasps_, run_.agenda, run_.ledger, run_.cost,
-          motions_, predictor_, contacts_);
+  archive(run_.time, run_.epoch_end, clock_, drawn_, grasps_, run_.agenda, run_.budget, run_.ledger,
+          run_.cost, motions_, predictor_, contacts_);
   run_.recorder.persist(archive);
 }
 

@@ -6,45 +6,33 @@
 
 namespace kairos {
 inline namespace core {
-namespace {
-
-constexpr int most_creeping = 200;
-constexpr std::int64_t many_impacts = 4096;
-constexpr int most_accelerating = 3;
-constexpr double least_progress = 1e-12;
-
-}  // namespace
-
-bool ImpactHistory::creeps(double speed, double reach, Instant t) {
-  const bool moved = !((t - last_impact_) * std::max(speed, last_speed_) <= reach);
-  creeping_ = moved || last_impact_ == Instant::never() ? 0 : creeping_ + 1;
-  last_impact_ = t;
-  last_speed_ = speed;
-  return creeping_ > most_creeping;
-}
-
-bool ImpactHistory::accelerates(double reach, Instant t) {
-  const std::int64_t n = ++impacts_;
-  const bool power_of_two = (n & (n - 1)) == 0;
-  if (n < many_impacts || !power_of_two) {
-    return false;
+void ImpactHistory::add(const Impact& impact, Instant t) {
+  const bool first = last_ == Instant::never();
+  const double way = first ? 0.0 : (t - last_) * impact.approach;
+  if (first || way > impact.near) {
+    chain_ = 0;
+    partners_.clear();
   }
-  const double duration = t - octave_start_;
-  accelerating_ = duration < octave_duration_ ? accelerating_ + 1 : 0;
-  octave_start_ = t;
-  octave_duration_ = duration;
-  const double hop = (t - last_impact_) * last_speed_;
-  return accelerating_ >= most_accelerating && hop <= reach;
+  ++chain_;
+  if (std::find(partners_.begin(), partners_.end(), impact.partner) == partners_.end()) {
+    partners_.push_back(impact.partner);
+  }
+  creeping_ = first || way > impact.tolerance ? 0 : creeping_ + 1;
+  const bool again = !first && impact.partner == last_partner_;
+  resting_ = impact.rest ? (again ? resting_ + 1 : 1) : 0;
+  last_ = t;
+  last_partner_ = impact.partner;
 }
 
-bool ImpactHistory::stalls(double progress) {
-  creeping_ = progress < least_progress ? creeping_ + 1 : 0;
-  return creeping_ > most_creeping;
+bool ImpactHistory::stalls(Instant t, double resolution) {
+  const bool first = stalled_ == Instant::never();
+  stalling_ = !first && t - stalled_ <= resolution ? stalling_ + 1 : 0;
+  stalled_ = t;
+  return stalling_ > most_stalling;
 }
 
 void ImpactHistory::persist(Archive& archive) {
-  archive(creeping_, last_impact_, last_speed_, impacts_, octave_start_, octave_duration_,
-          accelerating_);
+  archive(last_, chain_, partners_, last_partner_, creeping_, resting_, stalling_, stalled_);
 }
 
 }  // namespace core

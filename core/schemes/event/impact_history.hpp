@@ -1,44 +1,61 @@
 #pragma once
 
 #include "core/instant.hpp"
+#include "core/state.hpp"
 
 #include <cstdint>
+#include <vector>
 
 namespace kairos {
 inline namespace core {
 
 class Archive;
 
-/// Whether the impacts of a body accumulate: infinitely many in a finite time (Zeno), which no
-/// number of events gets past. Two signs of it, both counted rather than proven.
+/// The latest impacts of a body, as far as they hang together: whether infinitely many of them may
+/// follow each other in a finite time (Zeno), which no number of events gets past. Ways are
+/// measured between the two bodies that meet: whoever watches moves as he likes.
 class ImpactHistory {
  public:
-  /// An impact at t left the body with this speed (m/s, the fastest of its points). True where more
-  /// than 200 impacts in a row followed each other without it moving as far as `reach`, m. A cradle
-  /// or the break of a rack has a few.
-  [[nodiscard]] bool creeps(double speed, double reach, Instant t);
+  /// An impact at t.
+  struct Impact {
+    BodyIndex partner = 0;
+    double approach = 0.0;   ///< at which the two met, m/s, > 0
+    double near = 0.0;       ///< a shorter way than this hangs together with the last one, m
+    double tolerance = 0.0;  ///< and one shorter than this is none, m
+    bool rest = false;       ///< so slow that what presses allows no hop above tolerance
+  };
+  void add(const Impact& impact, Instant t);
 
-  /// True where impacts follow each other ever faster, as between a wall and a piston that comes
-  /// nearer: three times in a row twice as many impacts took less time than half as many before,
-  /// and from one to the next it moves less than `reach`, m. Such impacts end where the gap does; a
-  /// gap of 1e-9 m would take 1e9 of them. Impacts at a steady rate take twice as long for twice as
-  /// many. Not asked of the first 4096. To be asked once an impact, before `creeps`.
-  [[nodiscard]] bool accelerates(double reach, Instant t);
+  /// How many impacts hang together, from way to way shorter than `near`.
+  [[nodiscard]] std::int64_t chain() const { return chain_; }
+  /// Who they were with, each once, in the order of their first.
+  [[nodiscard]] const std::vector<BodyIndex>& partners() const { return partners_; }
+  /// True where more than 200 in a row followed each other on no way at all. A cradle or the break
+  /// of a rack has a few.
+  [[nodiscard]] bool creeps() const { return creeping_ > most_creeping; }
+  /// True where one and the same body was met more than three times in a row without a hop worth
+  /// the name: what presses the two together makes each hop that follows shorter.
+  [[nodiscard]] bool rests() const { return resting_ > most_resting; }
 
-  /// A look at a pair that went on by `progress` of its motions (0 to 1): true where more than 200
-  /// in a row went on by less than 1e-12, that is, where time stands still.
-  [[nodiscard]] bool stalls(double progress);
+  /// A look at t that changed nothing: true where more than 200 in a row came within `resolution`,
+  /// s, of the one before, that is, where time stands still.
+  [[nodiscard]] bool stalls(Instant t, double resolution);
 
   void persist(Archive& archive);
 
  private:
-  int creeping_ = 0;  ///< events in a row between which it hardly moved
-  Instant last_impact_ = Instant::never();
-  double last_speed_ = 0.0;       ///< after that impact, m/s
-  std::int64_t impacts_ = 0;      ///< so far
-  Instant octave_start_{};        ///< when `impacts_` was last a power of two
-  double octave_duration_ = 0.0;  ///< of the doubling before, s
-  int accelerating_ = 0;          ///< doublings in a row, each shorter than the one before
+  static constexpr int most_creeping = 200;
+  static constexpr int most_resting = 3;
+  static constexpr int most_stalling = 200;
+
+  Instant last_ = Instant::never();
+  std::int64_t chain_ = 0;
+  std::vector<BodyIndex> partners_;
+  BodyIndex last_partner_ = 0;
+  int creeping_ = 0;
+  int resting_ = 0;
+  int stalling_ = 0;
+  Instant stalled_ = Instant::never();
 };
 
 }  // namespace core

@@ -263,6 +263,9 @@ void FrameMotions::book_step(Mover& mover, const State& from, const std::vector<
   }
   const double roundoff =
       run_.options.roundoff && replayable ? roundoff_of(mover, from, to, h) : 0.0;
+  // A closed form may have given up; that of a top is rounded to a polynomial.
+  mover.exact = mover.stepper->info().order == 0 &&
+                !run_.model.tumbles(run_.model.island_of(mover.island.bodies.front()));
   const Leg leg{mover.island, from, to_, run_.given_force, mover.exact, roundoff};
   if (mover.island.forces.empty()) {
     run_.account.leg(leg);

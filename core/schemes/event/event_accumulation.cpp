@@ -1,0 +1,284 @@
+#include "core/schemes/event/event_accumulation.hpp"
+
+#include "core/archive.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+/// Impacts that are a shorter way than this part of the extent apart hang together.
+constexpr double small_way = 1e-3;
+/// Hops below this part of the extent are taken for rest where they die down.
+constexpr double small_rest = 1e-10;
+/// More contacts than these are not followed.
+constexpr std::size_t most_contacts = 24;
+
+/// 3, 4, 6, 8, 12, 16, ...: so that looks cost a constant share of the impacts.
+bool worth_a_look(std::int64_t n) {
+  const auto power_of_two = [](std::int64_t k) { return k > 0 && (k & (k - 1)) == 0; };
+  return n >= 3 && (power_of_two(n) || (n % 3 == 0 && power_of_two(n / 3)));
+}
+
+/// Acceleration of the material point `arm` from the origin of a motion, m/s^2; what changes the
+/// angular velocity is left out.
+Vector3 acceleration_at(const Motion& motion, double s, const Vector3& w, const Vector3& arm) {
+  return motion.acceleration(s) + w.cross(w.cross(arm));
+}
+
+/// One of two bodies in contact, at an instant.
+struct Side {
+  Side(const Model& model, BodyIndex i, const BodyState& at, const Motion& motion, double s,
+       const Vector3& point)
+      : body(i),
+        free(model.is_free(i)),
+        rotates(free && model.rotates(i)),
+        inertia(model.inertia(i)),
+        state(at),
+        arm(point - at.pose.position),
+        acceleration(acceleration_at(motion, s, at.twist.angular, arm)) {}
+
+  [[nodiscard]] Vector3 velocity() const {
+    return state.twist.linear + state.twist.angular.cross(arm);
+  }
+  [[nodiscard]] Vector3 turned_by(const Vector3& torque) const {
+    if (!rotates) {
+      return Vector3::Zero();
+    }
+    const Quaternion& q = state.pose.orientation;
+    return q * Vector3((q.conjugate() * torque).cwiseQuotient(inertia.principal));
+  }
+
+  BodyIndex body;
+  bool free;
+  bool rotates;
+  const BodyInertia& inertia;
+  BodyState state;
+  Vector3 arm;
+  Vector3 acceleration;
+};
+
+struct Joined {
+  Contact contact;
+  Side a;
+  Side b;
+
+  /// What a unit impulse of `other` along its normal does to the rate of this contact, 1/kg.
+  [[nodiscard]] double coupling(const Joined& other) const {
+    double sum = 0.0;
+    for (const Side* mine : {&a, &b}) {
+      for (const Side* its : {&other.a, &other.b}) {
+        if (mine->body != its->body || !mine->free) {
+          continue;
+        }
+        const Vector3 impulse = (its == &other.a ? -1.0 : 1.0) * other.contact.normal;
+        const Vector3 dv = impulse / mine->inertia.mass;
+        const Vector3 dw = mine->turned_by(its->arm.cross(impulse));
+        sum += (mine == &a ? -1.0 : 1.0) * contact.normal.dot(dv + dw.cross(mine->arm));
+      }
+    }
+    return sum;
+  }
+};
+
+}  // namespace
+
+EventAccumulation::EventAccumulation(EventRun& run, const EventMotions& motions)
+    : run_(run), motions_(motions), histories_(run.model.size()) {}
+
+double EventAccumulation::restitution(BodyIndex a, BodyIndex b) const {
+  return run_.model.body(a).restitution * run_.model.body(b).restitution;
+}
+
+double EventAccumulation::rest_tolerance(BodyIndex a, BodyIndex b, double e) const {
+  const double extent =
+      std::min(smallest_extent(run_.model.shape(a)), smallest_extent(run_.model.shape(b)));
+  const double coordinate = std::max(motions_.now(a).pose.position.cwiseAbs().maxCoeff(),
+                                     motions_.now(b).pose.position.cwiseAbs().maxCoeff());
+  const bool dies_down = e < 1.0 || motions_.is_damped(a) || motions_.is_damped(b);
+  return (dies_down ? small_rest * extent : 0.0) + 4.0 * epsilon * coordinate;
+}
+
+std::string EventAccumulation::after_impact(BodyIndex a, BodyIndex b, double approach, Instant t) {
+  const double e = restitution(a, b);
+  const double tolerance = rest_tolerance(a, b, e);
+  const bool rest = rests(a, b, approach, tolerance, t);
+  bool resting = true;
+  for (const BodyIndex i : {a, b}) {
+    if (!run_.model.is_free(i)) {
+      continue;
+    }
+    const double near = small_way * smallest_extent(run_.model.shape(i));
+    histories_[i].add({i == a ? b : a, approach, near, tolerance, rest}, t);
+    resting = resting && histories_[i].rests();
+  }
+  if (resting) {
+    return fmt::format(
+        "accumulation: {} come to rest on each other: what is left of their hops is "
+        "below {:.2g} m; what lasts is kept for a ball on one face only; {}",
+        run_.names(a, b), tolerance, part_them);
+  }
+  for (const BodyIndex i : {a, b}) {
+    if (!run_.model.is_free(i)) {
+      continue;
+    }
+    const ImpactHistory& history = histories_[i];
+    std::string reason;
+    if (worth_a_look(history.chain())) {
+      reason = squeeze(i, t);
+      if (reason.empty()) {
+        reason = collapse(a, b, t);
+      }
+    }
+    if (reason.empty() && history.creeps()) {
+      reason = fmt::format(
+          "accumulation: impacts of {} follow each other without end, on ways "
+          "below {:.2g} m; what lasts is kept for a ball on one face only; {}",
+          run_.names(a, b), tolerance, part_them);
+    }
+    if (!reason.empty()) {
+      return reason;
+    }
+  }
+  return {};
+}
+
+bool EventAccumulation::stalls(BodyIndex a, BodyIndex b, Instant t, double resolution) {
+  return histories_[run_.model.is_free(a) ? a : b].stalls(t, resolution);
+}
+
+/// Whether nothing that presses the two together lets them hop above tolerance: u^2 <= 2 a h, a the
+/// greatest acceleration that they have at any point.
+bool EventAccumulation::rests(BodyIndex a, BodyIndex b, double approach, double tolerance,
+                              Instant t) const {
+  double pressing = 0.0;
+  for (const BodyIndex i : {a, b}) {
+    const Motion& motion = motions_.of(i);
+    const double s = std::min(t - motion.start, motion.duration);
+    const double w = motion.twist(s).angular.norm();
+    pressing += motion.acceleration(s).norm();
+    if (w > 0.0) {
+      pressing += w * w * bounding_radius(run_.model.shape(i));
+    }
+  }
+  return approach * approach <= 2.0 * pressing * tolerance;
+}
+
+/// Pairs that met lately, from body to body, starting with this one.
+std::vector<BodyPair> EventAccumulation::cluster_pairs(BodyIndex a, BodyIndex b) const {
+  std::vector<BodyPair> pairs{{a, b}};
+  std::vector<BodyIndex> bodies{a, b};
+  for (std::size_t k = 0; k < bodies.size() && pairs.size() < most_contacts; ++k) {
+    const BodyIndex i = bodies[k];
+    if (!run_.model.is_free(i)) {
+      continue;
+    }
+    for (const BodyIndex j : histories_[i].partners()) {
+      const BodyPair pair = run_.agenda.before(i, j) ? BodyPair{i, j} : BodyPair{j, i};
+      if (std::find(pairs.begin(), pairs.end(), pair) == pairs.end()) {
+        pairs.push_back(pair);
+      }
+      if (std::find(bodies.begin(), bodies.end(), j) == bodies.end()) {
+        bodies.push_back(j);
+      }
+    }
+  }
+  return pairs;
+}
+
+/// The bodies that met lately, followed in relative coordinates: nothing rounds there.
+std::string EventAccumulation::collapse(BodyIndex a, BodyIndex b, Instant t) const {
+  std::vector<Joined> joined;
+  ImpactCluster cluster;
+  double horizon = std::numeric_limits<double>::infinity();
+  bool dissipates = false;
+  for (const auto& [p, q] : cluster_pairs(a, b)) {
+    const Shape& shape_p = run_.model.shape(p);
+    const Shape& shape_q = run_.model.shape(q);
+    const Overlap o =
+        run_.detector.overlap(shape_p, motions_.at(p, t).pose, shape_q, motions_.at(q, t).pose);
+    const auto side = [&](BodyIndex i) {
+      const bool struck = (i == a || i == b) && run_.model.is_free(i);
+      const Motion& motion = motions_.of(i);
+      return Side(run_.model, i, struck ? motions_.now(i) : motions_.at(i, t), motion,
+                  std::min(t - motion.start, motion.duration), o.point);
+    };
+    joined.push_back({{o.point, o.normal, o.gap}, side(p), side(q)});
+    const Side& of_p = joined.back().a;
+    const Side& of_q = joined.back().b;
+    const Vector3 v = of_q.velocity() - of_p.velocity();
+    const double e = restitution(p, q);
+    cluster.contacts.push_back({std::max(o.gap, 0.0), o.normal.dot(v),
+                                o.normal.dot(of_q.acceleration - of_p.acceleration), e});
+    dissipates = dissipates || e < 1.0;
+    // Until one has gone past the other by a small part of the extent, normals stay what they are.
+    const double way = small_way * std::min(smallest_extent(shape_p), smallest_extent(shape_q));
+    horizon = std::min(horizon, way / v.norm());
+  }
+  if (!dissipates || joined.size() < 2) {
+    return {};
+  }
+  for (const Joined& row : joined) {
+    for (const Joined& column : joined) {
+      cluster.coupling.push_back(row.coupling(column));
+    }
+  }
+  const ClusterFate fate = follow(std::move(cluster), horizon);
+  if (fate.kind != ClusterFate::Kind::accumulates) {
+    return {};
+  }
+  std::string names;
+  for (const Joined& j : joined) {
+    names += (names.empty() ? "" : ", ") + run_.names(j.a.body, j.b.body);
+  }
+  return fmt::format(
+      "accumulation: infinitely many impacts before t = {} s, between {} (inelastic "
+      "collapse): they end in touch, and what lasts is kept for a ball on one face "
+      "only; {}",
+      (t + fate.duration).seconds, names, part_them);
+}
+
+/// Between two bodies that nothing stops from meeting: impacts follow each other ever faster until
+/// no room is left.
+std::string EventAccumulation::squeeze(BodyIndex i, Instant t) const {
+  const std::vector<BodyIndex>& partners = histories_[i].partners();
+  if (partners.size() != 2 || run_.model.is_free(partners[0]) || run_.model.is_free(partners[1])) {
+    return {};
+  }
+  Vector3 normal = Vector3::Zero();
+  Vector3 velocity = Vector3::Zero();
+  double gap = 0.0;
+  double left = std::numeric_limits<double>::infinity();
+  bool opposite = true;
+  for (const BodyIndex j : partners) {
+    const Overlap o = run_.detector.overlap(run_.model.shape(j), motions_.at(j, t).pose,
+                                            run_.model.shape(i), motions_.at(i, t).pose);
+    opposite = normal.isZero(0.0) || normal.dot(o.normal) < -1.0 + 1e-12;
+    velocity = motions_.at(j, t).twist.linear - velocity;
+    normal = o.normal;
+    gap += std::max(o.gap, 0.0);
+    left = std::min(left, motions_.of(j).end() - t);
+  }
+  // The second one's velocity against the first's, along its normal, which points to body i.
+  const double closing = normal.dot(velocity);
+  if (!opposite || !(closing > 0.0) || !(gap < closing * left)) {
+    return {};
+  }
+  return fmt::format(
+      "accumulation: {} and '{}' close on '{}': no room is left at t = {} s, and "
+      "impacts follow each other ever faster until then; allowed: a run that ends "
+      "before (--duration)",
+      "'" + run_.model.body(partners[0]).name + "'", run_.model.body(partners[1]).name,
+      run_.model.body(i).name, (t + gap / closing).seconds);
+}
+
+void EventAccumulation::persist(Archive& archive) { archive(histories_); }
+
+}  // namespace core
+}  // namespace kairos

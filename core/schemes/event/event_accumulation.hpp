@@ -1,0 +1,49 @@
+#pragma once
+
+#include "core/schemes/event/event_motions.hpp"
+#include "core/schemes/event/impact_cluster.hpp"
+#include "core/schemes/event/impact_history.hpp"
+
+#include <string>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+
+/// Whether impacts accumulate: infinitely many of them in a finite time, which no number of events
+/// gets past, or a contact that lasts and is none of those that are kept. Reasons from what is
+/// known: restitutions, speeds, gaps and what presses. Elastic balls meet finitely often, however
+/// fast [Vaserstein1979]: where nothing is lost, nothing is called a collapse.
+class EventAccumulation {
+ public:
+  EventAccumulation(EventRun& run, const EventMotions& motions);
+
+  /// How small a hop is taken for rest, m: where hops die down those that would follow are summed
+  /// up, so that the height only has to be far below anything measured; otherwise only what the
+  /// coordinates cannot resolve.
+  [[nodiscard]] double rest_tolerance(BodyIndex a, BodyIndex b, double e) const;
+
+  /// An impact that met at `approach`, m/s, left the two at `now`: why the run cannot go on past
+  /// it; empty where it can.
+  [[nodiscard]] std::string after_impact(BodyIndex a, BodyIndex b, double approach, Instant t);
+  /// A look at a pair at t that changed nothing: true where looks get nowhere, each within
+  /// `resolution`, s, of the one before.
+  [[nodiscard]] bool stalls(BodyIndex a, BodyIndex b, Instant t, double resolution);
+
+  void persist(Archive& archive);
+
+ private:
+  [[nodiscard]] bool rests(BodyIndex a, BodyIndex b, double approach, double tolerance,
+                           Instant t) const;
+  [[nodiscard]] std::string collapse(BodyIndex a, BodyIndex b, Instant t) const;
+  [[nodiscard]] std::string squeeze(BodyIndex i, Instant t) const;
+  [[nodiscard]] std::vector<BodyPair> cluster_pairs(BodyIndex a, BodyIndex b) const;
+  [[nodiscard]] double restitution(BodyIndex a, BodyIndex b) const;
+
+  EventRun& run_;
+  const EventMotions& motions_;
+  std::vector<ImpactHistory> histories_;
+};
+
+}  // namespace core
+}  // namespace kairos

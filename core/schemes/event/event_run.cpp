@@ -1,0 +1,57 @@
+#include "core/schemes/event/event_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+/// Who keeps a run busy: "'a' and 'b' (98 %), 'b' and 'c' (2 %)".
+std::string who(const EventRun& run) {
+  std::vector<WorkBudget::Share> shares = run.budget.busiest();
+  for (WorkBudget::Share& s : shares) {
+    if (run.agenda.before(s.b, s.a)) {
+      std::swap(s.a, s.b);
+    }
+  }
+  std::sort(shares.begin(), shares.end(), [&](const auto& x, const auto& y) {
+    return std::tuple(-x.share, run.model.body(x.a).name, run.model.body(x.b).name) <
+           std::tuple(-y.share, run.model.body(y.a).name, run.model.body(y.b).name);
+  });
+  constexpr std::size_t most_pairs = 4;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(shares.size(), most_pairs); ++k) {
+    const WorkBudget::Share& s = shares[k];
+    const std::string pair =
+        s.a == s.b ? "'" + run.model.body(s.a).name + "'" : run.names(s.a, s.b);
+    text += fmt::format("{}{} ({:.0f} %)", k == 0 ? "" : ", ", pair, 100.0 * s.share);
+  }
+  return text.empty() ? "many bodies" : text;
+}
+
+}  // namespace
+
+void EventRun::spend(const DueEvent& event) {
+  switch (budget.spend(event)) {
+    case WorkBudget::Spent::nothing:
+      return;
+    case WorkBudget::Spent::instant:
+      return stop(event.time,
+                  fmt::format("accumulation: {} events at one instant, and time does not go on: of "
+                              "{}; they stay in touch, and what lasts is kept for a ball on one "
+                              "face only; {}",
+                              budget.most_at_once(), who(*this), part_them));
+    case WorkBudget::Spent::frame:
+      return stop(event.time,
+                  fmt::format("too many events: more than {} in one frame, most of them of {}; "
+                              "allowed: shorter frames (--frame), more events (--max-events), or a "
+                              "run that ends before (--duration)",
+                              budget.most_in_frame(), who(*this)));
+  }
+}
+
+}  // namespace core
+}  // namespace kairos

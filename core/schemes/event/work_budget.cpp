@@ -1,0 +1,67 @@
+#include "core/schemes/event/work_budget.hpp"
+
+#include "core/archive.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <utility>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+constexpr std::int64_t least_in_frame = 1'000'000;
+constexpr std::int64_t least_at_once = 10'000;
+constexpr std::int64_t of_a_body = 1000;
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+}  // namespace
+
+WorkBudget::WorkBudget(std::int64_t most_in_frame, std::size_t bodies, double frame)
+    : most_in_frame_(most_in_frame), frame_(frame) {
+  const std::int64_t all = of_a_body * static_cast<std::int64_t>(bodies);
+  if (most_in_frame_ == 0) {
+    most_in_frame_ = std::max(least_in_frame, all);
+  }
+  most_at_once_ = std::max(least_at_once, all);
+}
+
+WorkBudget::Spent WorkBudget::spend(const DueEvent& event) {
+  latest_[taken_++ % remembered] = {event.a, event.b};
+  if (event.time - since_ > epsilon * std::max(event.time.seconds, frame_)) {
+    since_ = event.time;
+    at_once_ = 0;
+  }
+  ++at_once_;
+  ++in_frame_;
+  if (at_once_ > most_at_once_) {
+    return Spent::instant;
+  }
+  return in_frame_ > most_in_frame_ ? Spent::frame : Spent::nothing;
+}
+
+std::vector<WorkBudget::Share> WorkBudget::busiest() const {
+  const std::size_t n = std::min<std::uint64_t>(taken_, remembered);
+  std::map<std::pair<BodyIndex, BodyIndex>, int> counts;
+  for (std::size_t k = 0; k < n; ++k) {
+    ++counts[std::minmax(latest_[k].a, latest_[k].b)];
+  }
+  std::vector<Share> shares;
+  for (const auto& [pair, count] : counts) {
+    const double share = static_cast<double>(count) / static_cast<double>(n);
+    if (share >= 0.1) {
+      shares.push_back({pair.first, pair.second, share});
+    }
+  }
+  std::stable_sort(shares.begin(), shares.end(),
+                   [](const Share& x, const Share& y) { return x.share > y.share; });
+  return shares;
+}
+
+void WorkBudget::Pair::persist(Archive& archive) { archive(a, b); }
+
+void WorkBudget::persist(Archive& archive) { archive(at_once_, since_, latest_, taken_); }
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,319 @@
+// Scenes in which impacts accumulate, or bodies stay in touch: event-driven says so and ends, and
+// does not say so of what is finite. None of them may take more than a moment.
+
+#include "core/reading/scene_reader.hpp"
+#include "simulation/penetration.hpp"
+#include "simulation/simulate.hpp"
+#include "tests/catch.hpp"
+#include "tests/simulation/ledger_check.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+
+using namespace kairos;
+
+namespace {
+
+Simulation run(const std::string& text, const RunChoice& choice = {}) {
+  return simulate(parse_scene(text, "test.toml"), choice);
+}
+
+std::string plane(const std::string& name, const std::string& normal,
+                  const std::string& position = "[0, 0, 0]") {
+  return fmt::format(
+      "[[body]]\nname = \"{}\"\nentity = \"wall\"\nshape = \"half-space\"\nnormal = {}\nposition = "
+      "{}\n",
+      name, normal, position);
+}
+
+std::string ball(const std::string& name, double radius, double e, const std::string& position,
+                 const std::string& velocity = "[0, 0, 0]", double mass = 1.0) {
+  return fmt::format(
+      "[[body]]\nname = \"{}\"\nentity = \"ball\"\nradius = {}\nmass = {}\nrestitution = "
+      "{}\nposition = {}\nvelocity = {}\n",
+      name, radius, mass, e, position, velocity);
+}
+
+std::string cube(const std::string& name, double half, double e, const std::string& position,
+                 const std::string& rest = "") {
+  return fmt::format(
+      "[[body]]\nname = \"{}\"\nentity = \"body\"\nhalf_extents = [{}, {}, {}]\nmass = "
+      "1.0\nrestitution = {}\nposition = {}\n{}\n",
+      name, half, half, half, e, position, rest);
+}
+
+/// It stopped as an accumulation after some real impacts, and what it leaves is whole: the last
+/// frame is where it stopped, nothing overlaps, the ledger balances, every impact did something.
+void check_stop(const Simulation& sim, const std::string& text, const std::string& says,
+                std::int64_t most_impacts) {
+  const RunResult& result = sim.result;
+  INFO(result.reason);
+  REQUIRE(result.status == RunStatus::stopped);
+  CHECK(result.reason.starts_with("accumulation: "));
+  CHECK(result.reason.find(says) != std::string::npos);
+  CHECK(result.reason.find("allowed: ") != std::string::npos);
+  CHECK(result.cost.impacts <= most_impacts);
+  CHECK(sim.trajectory.frame_times().back() == result.end);
+  std::int64_t impacts = 0;
+  for (const Event& event : sim.trajectory.events()) {
+    if (event.kind == EventKind::impact) {
+      ++impacts;
+      CHECK((event.after_a.twist.linear != event.before_a.twist.linear ||
+             event.after_b.twist.linear != event.before_b.twist.linear));
+    }
+  }
+  CHECK(impacts == result.cost.impacts);
+  tests::check_explained(result.ledger);
+  const Model model(parse_scene(text, "test.toml"));
+  CHECK_FALSE(PenetrationProbe(model).first(result.state));
+}
+
+}  // namespace
+
+TEST_CASE("a ball in a groove comes to rest between its sides: the run says so", "[accumulation]") {
+  const std::string symmetric = plane("a", "[1, 1, 0]") + plane("b", "[-1, 1, 0]");
+  const std::string lopsided = plane("a", "[1, 1, 0]") + plane("b", "[-0.3, 1, 0]");
+  const auto in = [](const std::string& groove, const char* at, double e) {
+    return "duration = 60\nframe = \"1/60\"\nG = 9.81\n" + groove + ball("ball", 0.1, e, at);
+  };
+  for (const double e : {0.0, 0.5, 0.9}) {
+    for (const char* at : {"[0.05, 1.0, 0]", "[0, 1.3, 0]", "[0.17, 1.3, 0]"}) {
+      CAPTURE(e, at);
+      const std::string text = in(symmetric, at, e);
+      check_stop(run(text), text, "'ball'", 600);
+    }
+  }
+  const std::string text = in(lopsided, "[0.05, 1.0, 0]", 0.5);
+  check_stop(run(text), text, "'ball'", 200);
+}
+
+TEST_CASE("a ball that slides down against a stopper comes to rest there", "[accumulation]") {
+  const std::string text = "duration = 10\nG = 9.81\n" +
+                           plane("plane", "[0.3420201433256687, 0.9396926207859084, 0]") +
+                           plane("stopper", "[-1, 0, 0]", "[1, 0, 0]") +
+                           ball("ball", 0.1, 0.0, "[-0.9657979856674331, 0.48038801151379357, 0]");
+  const auto sim = run(text);
+  check_stop(sim, text, "'ball' comes to rest between 'plane' and 'stopper'", 10);
+  CHECK(sim.result.end.seconds > 1.0);
+}
+
+TEST_CASE("a ball that slides over an obtuse edge onto another plane goes on", "[accumulation]") {
+  // From 45 degrees to level, without restitution: what is normal to the level plane is lost.
+  const std::string text = "duration = 2\nG = 10\n" + plane("slope", "[1, 1, 0]") +
+                           plane("level", "[0, 1, 0]") + ball("ball", 0.1, 0.0, "[-1, 1.3, 0]");
+  const auto sim = run(text);
+  INFO(sim.result.reason);
+  CHECK(sim.result.status == RunStatus::completed);
+  CHECK(sim.result.state[2].pose.position.x() > 0.5);
+  CHECK(std::abs(sim.result.state[2].pose.position.y() - 0.1) <= 1e-9);
+}
+
+TEST_CASE("cubes that start stacked, or on the floor, stop at once", "[accumulation]") {
+  std::string text = "duration = 1\nG = 9.81\n" + plane("floor", "[0, 1, 0]");
+  for (int n = 1; n <= 3; ++n) {
+    text += cube(fmt::format("cube{}", n), 0.1, 0.5, fmt::format("[0, {}, 0]", 0.2 * n - 0.1));
+    CAPTURE(n);
+    const auto sim = run(text);
+    check_stop(sim, text, "'cube1' and 'floor'", 10);
+    CHECK(sim.result.end.seconds == 0.0);
+  }
+}
+
+TEST_CASE(
+    "a cube that falls flat stops when its hops have died down, with no impact that does "
+    "nothing",
+    "[accumulation]") {
+  const std::string text =
+      "G = 9.8\n" + plane("floor", "[0, 1, 0]") + cube("cube", 0.125, 0.5, "[0, 0.5, 0]");
+  const auto sim = run(text);
+  check_stop(sim, text, "'cube' and 'floor' come to rest", 40);
+  // e^n (sqrt(2 g h)) is 1e-10 of an extent's hop: 18 impacts.
+  CHECK(sim.result.cost.impacts > 15);
+  const double exact = std::sqrt(2.0 * 0.375 / 9.8) * 3.0;
+  CHECK(std::abs(sim.result.end.seconds - exact) <= 1e-4);
+}
+
+TEST_CASE("three free balls collapse: found before relative velocities round to zero",
+          "[accumulation]") {
+  const auto text = [](double e) {
+    const double own = std::sqrt(e);
+    return "duration = 200\nframe = 2\nG = 0\n" + ball("a", 0.05, own, "[0, 0, 0]", "[1, 0, 0]") +
+           ball("b", 0.05, own, "[1, 0, 0]", "[0.05, 0, 0]") +
+           ball("c", 0.05, own, "[2, 0, 0]", "[-1, 0, 0]");
+  };
+  for (const double e : {1e-6, 0.01, 0.05}) {
+    CAPTURE(e);
+    const auto sim = run(text(e));
+    check_stop(sim, text(e), "infinitely many impacts before t = 0.9", 50);
+    CHECK(sim.result.reason.find("'a' and 'b'") != std::string::npos);
+    CHECK(sim.result.reason.find("'b' and 'c'") != std::string::npos);
+  }
+  for (const double e : {0.075, 0.5, 1.0}) {  // above 7 - 4 sqrt(3)
+    CAPTURE(e);
+    const auto sim = run(text(e));
+    INFO(sim.result.reason);
+    CHECK(sim.result.status == RunStatus::completed);
+  }
+}
+
+TEST_CASE("four free balls collapse, wherever they are going together", "[accumulation]") {
+  for (const double drift : {0.0, 3.0, -300.0}) {
+    const double own = std::sqrt(0.15);
+    std::string text = "duration = 10\nframe = 2\nG = 0\n";
+    for (int k = 0; k < 4; ++k) {
+      text += ball(fmt::format("b{}", k), 0.05, own, fmt::format("[{}, 0, 0]", k),
+                   fmt::format("[{}, 0, 0]", 1.0 - 2.0 * k / 3.0 + drift));
+    }
+    CAPTURE(drift);
+    check_stop(run(text), text, "infinitely many impacts before t = 1.3", 120);
+  }
+}
+
+TEST_CASE("a finite sequence of impacts is not called infinite", "[accumulation]") {
+  // A wall, a ball, and one of 100^k times its mass: floor(pi 10^k) impacts [Galperin2003].
+  for (const auto& [mass, digits] : {std::pair{1e6, 3141}, std::pair{1e8, 31415}}) {
+    const std::string text = "duration = 20\nframe = 20\nG = 0\n" + plane("wall", "[1, 0, 0]") +
+                             ball("small", 0.05, 1.0, "[1, 0, 0]") +
+                             ball("big", 0.05, 1.0, "[2, 0, 0]", "[-1, 0, 0]", mass);
+    const auto sim = run(text);
+    INFO(sim.result.reason);
+    CHECK(sim.result.status == RunStatus::completed);
+    CHECK(sim.result.cost.impacts == digits);
+  }
+}
+
+TEST_CASE("pi to six digits by impacts", "[accumulation][slow]") {
+  const std::string text = "duration = 20\nframe = 20\nG = 0\n" + plane("wall", "[1, 0, 0]") +
+                           ball("small", 0.05, 1.0, "[1, 0, 0]") +
+                           ball("big", 0.05, 1.0, "[2, 0, 0]", "[-1, 0, 0]", 1e10);
+  const auto sim = run(text);
+  INFO(sim.result.reason);
+  CHECK(sim.result.status == RunStatus::completed);
+  CHECK(sim.result.cost.impacts == 314159);
+}
+
+TEST_CASE("an elastic ball in air that damps it comes to rest", "[accumulation]") {
+  const auto sim = run("duration = 3\n" + plane("floor", "[0, 1, 0]") +
+                       ball("ball", 0.125, 1.0, "[0, 0.25, 0]", "[0, 0, 0]", 1e-3) +
+                       "[[force]]\nkind = \"linear-drag\"\ncoefficient = 0.1\n");
+  INFO(sim.result.reason);
+  CHECK(sim.result.status == RunStatus::completed);
+  CHECK(sim.result.state[1].twist.linear.norm() == 0.0);
+  CHECK(std::abs(sim.result.state[1].pose.position.y() - 0.125) <= 1e-10);
+  tests::check_explained(sim.result.ledger);
+}
+
+TEST_CASE("balls that a damped spring presses together stop as a contact that lasts",
+          "[accumulation]") {
+  const std::string text = "duration = 4\nframe = 0.1\nG = 0\n" +
+                           ball("a", 0.25, 0.5, "[0, 0, 0]", "[0, 0, 0]", 0.1) +
+                           ball("b", 0.5, 0.5, "[2, 0, 0]", "[0, 0, 0]", 0.5) +
+                           "[[force]]\nkind = \"spring\"\nstiffness = 100.0\ndamping = 0.5\nbodies "
+                           "= [\"a\", \"b\"]\nrest_length = 0.5\n";
+  check_stop(run(text), text, "'a' and 'b'", 2000);
+}
+
+TEST_CASE("a ball between walls that close on it: the time is told at which no room is left",
+          "[accumulation]") {
+  // One wall comes at 1 m/s; 0.8 m are left for the ball.
+  const std::string text =
+      "duration = 2\nframe = 0.1\nG = 0\n" + plane("wall", "[1, 0, 0]") +
+      plane("press", "[-1, 0, 0]", "[1, 0, 0]") +
+      "[body.drive]\namplitude = [-1, 0, 0]\nfrequency = " + fmt::format("{}", 0.5 / M_PI) + "\n" +
+      ball("ball", 0.1, 1.0, "[0.5, 0, 0]", "[0.1, 0, 0]");
+  const auto sim = run(text);
+  INFO(sim.result.reason);
+  REQUIRE(sim.result.status == RunStatus::stopped);
+  CHECK(sim.result.reason.find("close on 'ball': no room is left at t = 0.92") !=
+        std::string::npos);  // sin t = 0.8
+  CHECK(sim.result.cost.impacts < 10'000);
+}
+
+TEST_CASE("more events in a frame than are allowed stop the run, and the bound can be moved",
+          "[accumulation]") {
+  const auto text = [](double speed) {
+    return "duration = 1\nframe = 0.1\nG = 0\n" + plane("left", "[1, 0, 0]") +
+           plane("right", "[-1, 0, 0]", "[1, 0, 0]") +
+           ball("ball", 0.25, 1.0, "[0.5, 0, 0]", fmt::format("[{}, 0, 0]", speed));
+  };
+  // 200 impacts a frame.
+  CHECK(run(text(1e3), {.max_events = 210}).result.status == RunStatus::completed);
+  const auto few = run(text(1e3), {.max_events = 190});
+  CHECK(few.result.status == RunStatus::stopped);
+  CHECK(few.result.cost.impacts == 190);
+  CHECK(few.result.reason.starts_with("too many events: more than 190 in one frame"));
+  CHECK(few.result.reason.find("--max-events") != std::string::npos);
+  const auto mad = run(text(1e12));
+  INFO(mad.result.reason);
+  CHECK(mad.result.status == RunStatus::stopped);
+  CHECK(mad.result.cost.impacts <= 1'000'001);
+}
+
+TEST_CASE("no impact acts across a gap: what is undecided far from touch is looked at again",
+          "[accumulation]") {
+  struct Spin {
+    double duration, speed, rate;
+  };
+  for (const auto& [duration, speed, rate] : {Spin{10.0, 0.2, 1e5}, Spin{1000.0, 0.002, 600.0}}) {
+    // The face of a cube that turns about x meets the wall flat: after 1.5 m.
+    const std::string text =
+        fmt::format("duration = {}\nframe = {}\nG = 0\n", duration, duration / 100.0) +
+        plane("wall", "[-1, 0, 0]", "[2, 0, 0]") +
+        cube("cube", 0.5, 1.0, "[0, 0, 0]",
+             fmt::format("velocity = [{}, 0, 0]\nangular_velocity = [{}, 0, 0]", speed, rate));
+    const auto sim = run(text);
+    INFO(sim.result.reason);
+    CHECK(sim.result.status == RunStatus::completed);
+    REQUIRE(sim.trajectory.events().size() == 1);
+    const Event& impact = sim.trajectory.events().front();
+    CHECK(std::abs(impact.contact.gap) <= 1e-8);
+    CHECK(std::abs(impact.time.seconds * speed / 1.5 - 1.0) <= 1e-8);
+  }
+}
+
+TEST_CASE("a ball that slides along a wall in touch: frames change nothing, and no impact is told",
+          "[accumulation][invariance]") {
+  const auto events = [](const char* frame) {
+    const auto sim = run(fmt::format("duration = 2\nframe = {}\nG = 9.8\n", frame) +
+                         plane("wall", "[-1, 0, 0]", "[2, 0, 0]") + plane("floor", "[0, 1, 0]") +
+                         ball("ball", 0.5, 1.0, "[1.5, 2.5, 1]", "[0, 1, 0]"));
+    INFO(sim.result.reason);
+    CHECK(sim.result.status == RunStatus::completed);
+    CHECK(sim.result.cost.impacts == 1);
+    std::vector<Instant> times;
+    for (const Event& event : sim.trajectory.events()) {
+      times.push_back(event.time);
+    }
+    return times;
+  };
+  const std::vector<Instant> times = events("\"1/60\"");
+  for (const char* frame : {"0.001", "0.1", "0.5", "2.0"}) {
+    CAPTURE(frame);
+    CHECK(events(frame) == times);
+  }
+}
+
+TEST_CASE("a ball that slides off a block: where the origin is changes roundoff only",
+          "[accumulation][invariance]") {
+  // It comes to the edge 1 s after the start, and leaves it: v^2 > g r.
+  const auto leaves = [](double x, double y, double z) {
+    const auto sim =
+        run(fmt::format("duration = 1.5\nframe = 0.015625\nG = 9.8\n[[body]]\nname = "
+                        "\"block\"\nentity = \"wall\"\nhalf_extents = [2, 0.5, 2]\nposition = [{}, "
+                        "{}, {}]\n",
+                        x, y - 0.5, z) +
+            ball("ball", 0.125, 0.0, fmt::format("[{}, {}, {}]", x + 0.75, y + 0.75, z),
+                 "[0, 0, 2]", 2.0));
+    INFO(sim.result.reason);
+    CHECK(sim.result.status == RunStatus::completed);
+    REQUIRE(sim.trajectory.events().size() == 3);
+    const Event& end = sim.trajectory.events().back();
+    CHECK(end.kind == EventKind::contact_ends);
+    return end.time.seconds;
+  };
+  CHECK(std::abs(leaves(0.0, 0.0, 0.0) - 1.0) <= 1e-15);
+  CHECK(std::abs(leaves(64.0, -32.0, 16.0) - 1.0) <= 1e-13);  // eps of the coordinates, at 2 m/s
+  CHECK(std::abs(leaves(3.7, -100.3, 17.1) - 1.0) <= 1e-13);
+}
