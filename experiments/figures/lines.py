@@ -6,6 +6,9 @@ import style
 from data import points, unique
 
 
+YES_OR_NO = ("tunnelled", "passed", "turned", "out")  # 0 or 1 in a run: drawn as the fraction of runs
+
+
 def draw(data, figures):
     for sweep in data.sweeps():
         draw_sweep(data, figures, sweep)
@@ -21,6 +24,9 @@ def draw_sweep(data, figures, sweep):
     rows = data.table(sweep, "summary")
     if x is None or not rows or not all(isinstance(row[x], float) for row in rows):
         return
+    still = {metric: unique(row[f"{metric}.mean"] for row in rows) for metric in metrics}
+    constant = [metric for metric in metrics if len(still[metric]) == 1 and len(metrics) > 1]
+    metrics = [metric for metric in metrics if metric not in constant] or metrics[:1]
     others = [axis for axis in axes if axis != x]
     lines = unique((row["method"], *(row[axis] for axis in others)) for row in rows)
     columns = min(3, len(metrics))
@@ -28,24 +34,40 @@ def draw_sweep(data, figures, sweep):
     figure, panels = plt.subplots(lines_of_panels, columns, squeeze=False,
                                   figsize=(1.0 + 3.4 * columns, 0.8 + 2.7 * lines_of_panels))
     panels = list(panels.flat)
+    names = [line_name(line, others) for line in lines]
+    alone = len(lines) == len(unique(line[0] for line in lines))
+    looks = [style.look(name, names) if alone else style.by_place(i, name)
+             for i, name in enumerate(names)]
     for panel, metric in zip(panels, metrics):
-        for i, line in enumerate(lines):
+        for line, look in zip(lines, looks):
             of_line = [row for row in rows
                        if (row["method"], *(row[axis] for axis in others)) == line]
-            name = ", ".join([str(line[0])] + [f"{axis} {value:g}" if isinstance(value, float)
-                                               else f"{axis} {value}"
-                                               for axis, value in zip(others, line[1:])])
-            properties = style.look(name, [name if j == i else j for j in range(len(lines))])
-            panel.plot(*points(of_line, x, f"{metric}.median"), **properties)
-            low = points(of_line, x, f"{metric}.q1")
-            high = points(of_line, x, f"{metric}.q3")
-            panel.fill_between(low[0], low[1], high[1], color=properties["color"], alpha=0.15,
-                               linewidth=0)
+            draw_line(panel, of_line, x, metric, look)
         panel.set_xscale(data.column(sweep, x)["scale"])
         panel.set_xlabel(data.label(sweep, x))
-        panel.set_ylabel(data.label(sweep, metric))
+        panel.set_ylabel(("fraction of runs: " if metric in YES_OR_NO else "") +
+                         data.label(sweep, metric))
     for panel in panels[len(metrics):]:
         panel.set_visible(False)
     style.legend_below(figure, panels[:1])
-    figures.save(figure, sweep, data.entry(f"caption:{sweep}") or
-                 "Medians over the repeats; shaded: from the lower to the upper quartile.")
+    told = ", ".join(f"{metric} {still[metric][0]}" for metric in constant)
+    figures.save(figure, sweep, (data.entry(f"caption:{sweep}") or
+                 f"Against {x}: medians over the repeats; shaded: from the lower to the upper "
+                 "quartile.") + (f" The same for all, and not drawn: {told}." if told else ""))
+
+
+def line_name(line, others):
+    """The method, and where it stands on the other axes."""
+    return ", ".join([str(line[0])] + [f"{axis} {value:g}" if isinstance(value, float)
+                                       else f"{axis} {value}"
+                                       for axis, value in zip(others, line[1:])])
+
+
+def draw_line(panel, rows, x, metric, look):
+    if metric in YES_OR_NO:
+        panel.plot(*points(rows, x, f"{metric}.mean"), **look)
+        return
+    panel.plot(*points(rows, x, f"{metric}.median"), **look)
+    low = points(rows, x, f"{metric}.q1")
+    high = points(rows, x, f"{metric}.q3")
+    panel.fill_between(low[0], low[1], high[1], color=look["color"], alpha=0.15, linewidth=0)

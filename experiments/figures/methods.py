@@ -62,6 +62,13 @@ def scheme_of(name):
     return "original" if name == THESIS else None
 
 
+def by_place(i, label):
+    """Of what is no method, or of one method several times: the i-th look."""
+    return {"color": COLOURS[i % 8], "marker": MARKERS[i % len(MARKERS)],
+            "linestyle": DASHES[i % 8], "markeredgewidth": 1.1, "markerfacecolor": "white",
+            "label": label}
+
+
 def look(name, names=()):
     """Line properties of a method. A name that is no method of ours (of a user's own sweep) takes
     what is left, by its place among `names`."""
@@ -80,7 +87,7 @@ def look(name, names=()):
     else:
         others = [other for other in names if other not in _SCHEME and other not in _MARK]
         i = others.index(name) if name in others else 0
-        colour, mark, dash = COLOURS[i % 8], MARKERS[i % len(MARKERS)], DASHES[i % 8]
+        return by_place(i, name)
     mark = _MARK[integrator] if integrator else mark
     return {"color": colour, "marker": mark, "linestyle": dash, "markeredgewidth": 1.1,
             "markerfacecolor": colour if name == THESIS else "white", "label": name}

@@ -9,7 +9,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen first)
 
-from methods import COLOURS, DASHES, MARKERS, look, scheme_of  # noqa: E402,F401  (figures ask style for all)
+from methods import (  # noqa: E402,F401  (figures ask style for all)
+    COLOURS, DASHES, MARKERS, by_place, look, scheme_of)
 
 PREDICTION = {"color": "black", "linestyle": (0, (1, 1)), "linewidth": 1.1, "zorder": 5}
 

@@ -198,16 +198,18 @@ class StoryRecorder::Teller {
     return story_.complete;
   }
 
+  /// A frame after the collision of each caption; what else a caption tells comes at its own time.
   void choose_frames() {
+    constexpr double frame = 1.0 / 60.0;
     story_.frames = {0.5 * std::min(red_blue_, green_in_),
-                     std::max(red_blue_, green_in_) + 0.02,
-                     std::max(blue_floor_, turns_) + 0.04,
-                     std::max(blue_wall_, green_out_) + 0.04,
-                     red_blue_again_ + 0.04,
-                     red_edge_ + 0.04,
-                     red_green_ + 0.04,
+                     red_blue_ + frame,
+                     blue_floor_ + frame,
+                     blue_wall_ + frame,
+                     red_blue_again_ + frame,
+                     red_edge_ + frame,
+                     red_green_ + frame,
                      belt_ - 0.25,
-                     belt_ + 0.2};
+                     belt_ + 4.0 * frame};
   }
 
   const StoryRecorder& run_;

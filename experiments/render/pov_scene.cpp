@@ -80,6 +80,29 @@ std::string solid(const Shape& shape) {
   return "plane { y, 0 ";
 }
 
+/// A blade and its handle, as large as the box that they collide as: thin along its shortest edge,
+/// the handle towards the negative end of its longest.
+std::string racket(const Box& box) {
+  const Vector3& h = box.half_extents;
+  int thin = 0;
+  int along = 0;
+  h.minCoeff(&thin);
+  h.maxCoeff(&along);
+  const int wide = 3 - thin - along;
+  Vector3 radii = h;
+  radii[along] *= 0.72;
+  Vector3 centre = Vector3::Zero();
+  centre[along] = 0.28 * h[along];
+  Vector3 least = -h;
+  least[wide] *= 0.2;
+  Vector3 most = h;
+  most[wide] *= 0.2;
+  most[along] = -0.3 * h[along];
+  const Vector3 axis = Vector3::Unit(thin);
+  return fmt::format("union {{ cylinder {{ {}, {}, 1 scale {} translate {} }} box {{ {}, {} }} ",
+                     vec(-axis), vec(axis), vec(radii), vec(centre), vec(least), vec(most));
+}
+
 /// The twelve edges of a box.
 std::string wire(const Box& box, const Pose& pose, double thickness, const Colour& colour) {
   const Vector3& h = box.half_extents;
@@ -160,18 +183,22 @@ class Painter {
           "{:.9g} }} {} }}\n",
           25.0 * thickness_, matrix(plane));
     }
+    const auto* box = std::get_if<Box>(&actor.shape);
+    const bool is_bat = box != nullptr && actor.entity == "bat";
     double transmit = actor.is_free ? 0.0 : 0.25;
     if (actor.is_field) {
       transmit = 0.72;
+    } else if (actor.entity == "hand") {
+      transmit = 0.5;  // what it holds shows through
     } else if (overlaps(i)) {
       transmit = 0.55;  // what is common shows through
     }
     std::string text =
-        fmt::format("{} {} {} {} }}\n", solid(actor.shape), pigment(colour, transmit),
-                    actor.is_field ? "no_shadow" : "", matrix(pose));
+        fmt::format("{} {} {} {} }}\n", is_bat ? racket(*box) : solid(actor.shape),
+                    pigment(colour, transmit), actor.is_field ? "no_shadow" : "", matrix(pose));
     const Colour dark{"", 0.5 * colour.red, 0.5 * colour.green, 0.5 * colour.blue};
-    if (const auto* box = std::get_if<Box>(&actor.shape)) {
-      text += wire(*box, pose, thickness_, dark);
+    if (box != nullptr) {
+      text += wire(*box, pose, is_bat ? 0.6 * thickness_ : thickness_, dark);
     } else if (const auto* bounds = std::get_if<Box>(&actor.collides_as);
                bounds != nullptr && options_.boxes) {
       text += wire(*bounds, pose, 0.6 * thickness_, dark);

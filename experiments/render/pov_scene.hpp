@@ -37,7 +37,8 @@ struct PictureOptions {
   bool boxes = true;  ///< the box of what collides as one, and of bats, as wire
 };
 
-/// A picture as a POV-Ray 3.7 scene: balls; boxes as wire with pale faces; fields translucent; what
+/// A picture as a POV-Ray 3.7 scene: balls; boxes as wire with pale faces; bats as rackets in the wire
+/// of the box that they collide as; hands and fields translucent; what
 /// two solids have in common glows; the time in the lower left corner.
 [[nodiscard]] std::string pov_scene(const Footage& footage, std::size_t picture,
                                     const PictureOptions& options);

@@ -40,6 +40,22 @@ std::string plain(std::string text) {
   return text;
 }
 
+/// "A and B" as "A; B". What stands in braces is one name: an institution may have an "and".
+std::string listed(const std::string& authors) {
+  std::string out;
+  int depth = 0;
+  for (std::size_t at = 0; at < authors.size();) {
+    depth += authors[at] == '{' ? 1 : authors[at] == '}' ? -1 : 0;
+    if (depth == 0 && authors.compare(at, 5, " and ") == 0) {
+      out += "; ";
+      at += 5;
+    } else {
+      out += authors[at++];
+    }
+  }
+  return out;
+}
+
 class BibReader {
  public:
   BibReader(std::string_view text, const std::string& path) : text_(text), path_(path) {}
@@ -118,7 +134,8 @@ class BibReader {
       }
       const std::string name = word("=}\n");
       expect('=');
-      entry.fields[name] = plain(field_value());
+      const std::string value = field_value();
+      entry.fields[name] = plain(name == "author" ? listed(value) : value);
     }
   }
 
@@ -138,11 +155,7 @@ std::string reference_html(const BibliographyEntry& entry) {
     const auto found = entry.fields.find(name);
     return found == entry.fields.end() ? std::string() : html(found->second);
   };
-  std::string authors = field("author").empty() ? field("organization") : field("author");
-  for (std::size_t at = authors.find(" and "); at != std::string::npos;
-       at = authors.find(" and ", at)) {
-    authors.replace(at, 5, "; ");
-  }
+  const std::string authors = field("author").empty() ? field("organization") : field("author");
   std::string where;
   for (const char* name : {"journal", "booktitle", "howpublished", "school", "institution"}) {
     where = where.empty() ? field(name) : where;
@@ -157,7 +170,7 @@ std::string reference_html(const BibliographyEntry& entry) {
     out += field("pages").empty() ? "" : ", " + field("pages");
     out += ".";
   }
-  for (const char* name : {"edition", "publisher", "note"}) {
+  for (const char* name : {"type", "edition", "publisher", "note"}) {
     if (!field(name).empty()) {
       out += fmt::format(" {}{}.", field(name), std::string_view(name) == "edition" ? " ed" : "");
     }

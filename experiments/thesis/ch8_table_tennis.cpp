@@ -84,9 +84,10 @@ Told tell_session() {
   constexpr double h = 1.0 / 60.0;
   told.board.frames = {
       {"The user serves: the hand has let go of the ball.", first.hit - 0.08, first.hit - 0.08},
-      {"The bat hits the ball.", hit.first + h, hit.second + h},
+      {"The bat hits the ball.", hit.first + 2 * h, hit.second + 2 * h},
       {"The ball moves down and right and bounces off the table.", bounce.first + 2 * h,
        bounce.second + 2 * h},
+      {"... and goes out on the right hand side.", bounce.first + 7 * h, bounce.second + 7 * h},
       {"The user uses the hand to retrieve the ball.", second.begin + 0.25, second.begin + 0.25},
       {"The user releases the ball and moves the bat towards it.", second.hit - 0.06,
        second.hit - 0.06},
@@ -116,13 +117,17 @@ ThesisFigure table_tennis_in_the_flesh() {
           .chapter = "8",
           .title = "Chapter 8.2: vrttapp in the flesh",
           .shows =
-              "Six frames: the user hits the ball, it bounces off the table and leaves on the "
+              "Six frames, and the exit that the text tells: the user hits the ball, it bounces "
+              "off the table and leaves on the "
               "right, the hand retrieves it, and the user hits it towards the camera.",
           .how =
               "The scene table-tennis with recordings that tell this story: two strokes at 3 "
               "m/s, recorded by the same noisy trackers as the rallies. Left the original "
               "scheme, right event-driven.",
-          .caption = "The six frames; each at the moment of its own run that it tells.",
+          .caption =
+              "The six frames, and the ball's way out; each at the moment of its own run that it "
+              "tells. Bats are rackets in the wire of their boxes, hands translucent: the ball "
+              "shows through.",
           .finding =
               "At 3 m/s bat and ball meet {hits_original} times under the original scheme "
               "and {hits_events} times event-driven: slow enough not to pass. The last "

@@ -84,6 +84,9 @@ std::span<const Corrected> corrected() {
        "jitter at the surface, on their way"},
       {"12", "fig. 15 taken literally lets about 9 % through at 20 m/s",
        "{literal_20} there, and a function with teeth: {literal_2} at 2 m/s, none where n is even"},
+      {"12a", "fig. 15 taken literally lets more strokes pass than the original",
+       "20 rallies seemed to say so; 200 do not, with spheres and a threshold of 2.75 cm: the "
+       "difference is within its interval. With the thesis' boxes, or at 5.5 cm, more do pass"},
       {"14", "the geometric approach fails a bat",
        "it was the start in full swing, whose first frame has no velocity; from rest it never "
        "passes. What it misses is a second contact within a frame"},
@@ -156,6 +159,12 @@ void tell_claims(FigureData& data) {
   };
   data.value("literal_2", literal(2.0), "%", "of bullets at 2 m/s, fig. 15, threshold 3 cm", 2);
   data.value("literal_20", literal(20.0), "%", "of bullets at 20 m/s, fig. 15, threshold 3 cm", 2);
+  double sum = 0.0;
+  constexpr int speeds = 3801;
+  for (int k = 0; k < speeds; ++k) {
+    sum += literal_passes(2.0 + 0.01 * k, 0.5 * bullet_length);
+  }
+  data.value("literal_mean", 100.0 * sum / speeds, "%", "mean from 2 to 40 m/s, closed form", 2);
   data.value("corridor", 100.0 * corridor_left(40.0, 50), "%", "that leave the corridor", 3);
   data.value("sphere", std::numbers::pi * std::sqrt(3.0) / 2.0, "", "ball around a cube", 3);
   data.value("box", 6.0 / std::numbers::pi, "", "cube around a ball", 3);

@@ -1,6 +1,9 @@
 #include "core/random.hpp"
+#include "experiments/rally/interval.hpp"
 #include "experiments/thesis/corner_test.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
+
+#include <fmt/format.h>
 
 namespace kairos::experiments::thesis {
 namespace {
@@ -35,6 +38,12 @@ void add_examples(FigureData& data, std::span<const Example> examples) {
 FlatBox random_box(Random& random) {
   return {random.uniform(0.0, 2.0), random.uniform(0.0, 2.0), random.uniform(0.1, 1.5),
           random.uniform(0.1, 1.5)};
+}
+
+void tell_interval(FigureData& data, const std::string& name, std::int64_t count, std::int64_t of) {
+  const Interval share = share_interval(count, of);
+  data.text(name, fmt::format("{:.1f} to {:.1f} %", 100.0 * share.low, 100.0 * share.high),
+            "95 % interval");
 }
 
 /// How often each test errs on random pairs, against the full test. Also checks that the full test
@@ -73,6 +82,8 @@ void add_rates(FigureData& data) {
     const std::string name(tests[i].name);
     data.value(name + "_missed", 100.0 * of_overlapping, "%", "overlaps it misses", 3);
     data.value(name + "_invented", 100.0 * of_disjoint, "%", "overlaps it invents", 3);
+    tell_interval(data, name + "_missed_interval", missed[i], overlapping);
+    tell_interval(data, name + "_invented_interval", invented[i], n - overlapping);
   }
   data.count("pairs", n, "random pairs");
   data.count("seed", static_cast<std::int64_t>(seed), "of the draws");
@@ -95,28 +106,30 @@ void measure_one_axis(FigureData& data) {
 }  // namespace
 
 ThesisFigure aabbs_overlapping() {
-  return {.name = "fig02",
-          .chapter = "2",
-          .title = "Figure 2: two AABBs must overlap along both axes to intersect",
-          .shows =
-              "The code of 2.1.2 asks whether the bottom left corner of C is inside D; "
-              "“similar segments would be needed to test all four corners”.",
-          .how =
-              "The printed code, the corner test that must have been meant, all four corners of C, "
-              "and the corners of both boxes, beside the full test (overlap along both axes) and "
-              "the library's separating axes; on the pair of the figure, on two pairs that defeat "
-              "corners, and on {pairs} random pairs (seed {seed}).",
-          .caption =
-              "The pair of the figure, and two overlapping pairs of which no corner "
-              "of C lies in D; of the cross, no corner of D lies in C either. Last: overlaps "
-              "that each test misses among random pairs.",
-          .finding =
-              "Testing corners is not enough, however many: the four corners of C miss "
-              "{corners_missed} of the overlaps, those of both boxes still {both_missed} "
-              "(crosses). The full test and the library agree on all pairs ({library_missed} "
-              "missed, {library_invented} invented).",
-          .script = "thesis.fig02",
-          .measure = measure_both_axes};
+  return {
+      .name = "fig02",
+      .chapter = "2",
+      .title = "Figure 2: two AABBs must overlap along both axes to intersect",
+      .shows =
+          "The code of 2.1.2 asks whether the bottom left corner of C is inside D; "
+          "“similar segments would be needed to test all four corners”.",
+      .how =
+          "The printed code, the corner test that must have been meant, all four corners of C, "
+          "and the corners of both boxes, beside the full test (overlap along both axes) and "
+          "the library's separating axes; on the pair of the figure, on two pairs that defeat "
+          "corners, and on {pairs} random pairs (seed {seed}).",
+      .caption =
+          "The pair of the figure, and two overlapping pairs of which no corner "
+          "of C lies in D; of the cross, no corner of D lies in C either. Last: overlaps "
+          "that each test misses among random pairs.",
+      .finding =
+          "Testing corners is not enough, however many: the four corners of C miss "
+          "{corners_missed} of the overlaps ({corners_missed_interval}), those of both boxes still "
+          "{both_missed} ({both_missed_interval}; crosses). The full test and the library agree on "
+          "all pairs ({library_missed} "
+          "missed, {library_invented} invented).",
+      .script = "thesis.fig02",
+      .measure = measure_both_axes};
 }
 
 ThesisFigure aabbs_on_one_axis() {

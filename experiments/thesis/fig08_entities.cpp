@@ -97,8 +97,8 @@ ThesisFigure hierarchy() {
           .chapter = "5",
           .title = "Figure 9: the object hierarchy",
           .shows =
-              "An extract of the CoRgi object hierarchy: what VRPhysicsEntity inherits, and "
-              "what inherits from it.",
+              "An extract of the CoRgi object hierarchy: what VRPhysicsEntity inherits (Component, "
+              "VREntity), and what inherits from it.",
           .how =
               "The classes of the registered entities and their base classes, read from the "
               "program's run-time type information.",
@@ -115,22 +115,26 @@ ThesisFigure hierarchy() {
 }
 
 ThesisFigure class_diagram() {
-  return {.name = "fig10",
-          .chapter = "5",
-          .title = "Figure 10: the VRPhysicsEntity class diagram",
-          .shows = "The attributes and methods that physics entities have in common (5.4).",
-          .how =
-              "The keys that the scene reader accepts for any body, those that each entity adds, "
-              "and the methods that each answers otherwise than the base class: all from the "
-              "catalogue of {entities} entities.",
-          .caption =
-              "Attributes (as scene files name them) and properties of the entities that are "
-              "registered.",
-          .finding =
-              "Mass, velocity, G, normal, collision type: the thesis' attributes are here "
-              "under their names. Net force is not: it belongs to a frame, not to a body.",
-          .script = "thesis.fig10",
-          .measure = measure_class_diagram};
+  return {
+      .name = "fig10",
+      .chapter = "5",
+      .title = "Figure 10: the VRPhysicsEntity class diagram",
+      .shows =
+          "The attributes and methods that physics entities have in common, in pairs of Get "
+          "and Set (5.4).",
+      .how =
+          "The keys that the scene reader accepts for any body, those that each entity adds, "
+          "and the methods that each answers otherwise than the base class: all from the "
+          "catalogue of {entities} entities.",
+      .caption =
+          "Attributes (as scene files name them) and properties of the entities that are "
+          "registered.",
+      .finding =
+          "Mass, velocity, G, normal, collision type: the thesis' attributes are here "
+          "under their names, read from the scene rather than by pairs of Get and Set. Net force "
+          "is not: it belongs to a frame, not to a body.",
+      .script = "thesis.fig10",
+      .measure = measure_class_diagram};
 }
 
 }  // namespace kairos::experiments::thesis

@@ -11,7 +11,7 @@ namespace kairos::experiments::thesis {
 namespace {
 
 /// From where a player stands.
-const Camera player{{0.9, 1.75, 2.35}, {-0.05, 1.05, 0.15}, 42.0};
+const Camera player{{0.9, 1.75, 2.35}, {-0.02, 0.98, 0.15}, 47.0};
 
 Footage run(const Scene& scene, const RunChoice& choice) {
   FootageRecorder recorder;
@@ -77,11 +77,13 @@ bool before_bat(const Footage& footage, std::size_t picture) {
   return find("bat").to_body(find("ball").position).z() < 0.0;
 }
 
-/// Whether the ball is outside before picture k, inside in it, and deeper in the next, always on
-/// the side that it came from.
+constexpr double visibly = 0.004;  // m: deeper by so much is seen in a picture
+
+/// Whether the ball is outside before picture k, inside in it, and visibly deeper in the next,
+/// always on the side that it came from.
 bool sinks(const Footage& footage, std::size_t k) {
   return depth_at(footage, k - 1) == 0.0 && depth_at(footage, k) > 0.0 &&
-         depth_at(footage, k + 1) > depth_at(footage, k) &&
+         depth_at(footage, k + 1) > depth_at(footage, k) + visibly &&
          before_bat(footage, k - 1) == before_bat(footage, k) &&
          before_bat(footage, k) == before_bat(footage, k + 1);
 }
@@ -109,7 +111,7 @@ struct Penetration {
   std::uint64_t seed = 0;      ///< of the rally
 };
 
-/// A slow rally with a bat as heavy as the ball, by both schemes.
+/// A rally with a bat as heavy as the ball, by both schemes.
 void play_equal_masses(const RallyRecording& rally, Storyboard& board) {
   RallyMethod method{.name = "figure 12"};
   method.bat_mass = 0.0027;
@@ -122,7 +124,7 @@ void play_equal_masses(const RallyRecording& rally, Storyboard& board) {
 /// and the next.
 Penetration penetration() {
   constexpr std::uint64_t first_seed = 1999;
-  constexpr std::uint64_t most_seeds = 200;
+  constexpr std::uint64_t most_seeds = 400;
   Penetration found;
   Storyboard& board = found.board;
   std::size_t k = 0;
@@ -130,7 +132,7 @@ Penetration penetration() {
     if (found.seed == first_seed + most_seeds) {
       throw RunError("no rally shows the ball sinking into the bat");
     }
-    const RallyRecording rally = make_rally({.seed = found.seed, .fastest = 3.0});
+    const RallyRecording rally = make_rally({.seed = found.seed, .fastest = 5.0});
     play_equal_masses(rally, board);
     k = sinking_picture(board.original, rally);
   }
@@ -146,7 +148,7 @@ Penetration penetration() {
     found.depths.push_back(depth_at(board.original, picture));
   }
   const Vector3 ball = board.original.pictures[k].poses.back().position;
-  board.options = {.camera = Camera{ball + Vector3(0.75, 0.16, 0.1), ball, 34.0}};
+  board.options = {.camera = Camera{ball + Vector3(0.5, 0.08, 0.04), ball, 26.0}};
   return found;
 }
 
@@ -199,7 +201,8 @@ ThesisFigure bat_and_ball() {
           "inside it.",
       .how =
           "Three frames running of the first stroke, from seed 1999 on (found: {seed}; strokes at "
-          "2 to 3 m/s), that shows the ball sinking into the bat. The bat is as heavy as the "
+          "2 to 5 m/s), that shows the ball 4 mm deeper in the bat a frame after the hit. The bat "
+          "is as heavy as the "
           "ball here, so that the exchange of 13.7 gives the ball the bat's own velocity; "
           "left the original scheme, right event-driven at the same times. What bat and "
           "ball have in common glows; the depth is printed.",

@@ -135,16 +135,18 @@ TEST_CASE("rally: the nudge helps where a hit ball stays with the bat, and nowhe
   CHECK(light > frames("original"));
 }
 
-TEST_CASE("rally: fig. 15 taken literally lets more strokes pass than the original", "[rally]") {
+TEST_CASE("rally: fig. 15 taken literally does not cure the bat; equal substeps do", "[rally]") {
   const std::vector<RallyMethod> methods = rally_methods();
-  std::int64_t more = 0;
+  std::int64_t original = 0, literal = 0, equal = 0;
   for (std::uint64_t seed = 1999; seed < 2009; ++seed) {
     const RallyRecording rally = make_rally({.seed = seed});
-    more += play(rally, method(methods, "substepped, 0.0275 m")).passed().count -
-            play(rally, method(methods, "original")).passed().count;
-    CHECK(play(rally, method(methods, "equal substeps, 0.0275 m")).passed().count == 0);
+    original += play(rally, method(methods, "original")).passed().count;
+    literal += play(rally, method(methods, "substepped, 0.0275 m")).passed().count;
+    equal += play(rally, method(methods, "equal substeps, 0.0275 m")).passed().count;
   }
-  CHECK(more > 0);
+  CAPTURE(original, literal, equal);  // of 240 strokes; a cure of half would be 4 deviations away
+  CHECK(2 * literal > original);
+  CHECK(20 * equal < original);
 }
 
 TEST_CASE("rally: with the thesis' boxes and force the ball falls as before and is hit as a box",

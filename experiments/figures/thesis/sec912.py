@@ -27,17 +27,18 @@ def over_time(data, figures):
         look = style.look(name, names)
         rows = pick(data.rows("heights"), scheme=scheme, integrator=integrator)
         look["markevery"] = max(1, len(rows) // 9)
-        heights.plot(*points(rows, "bounce", "height"), **look)
+        heights.plot(*points(rows, "t", "height"), **look)
         rows = pick(data.rows("energy"), scheme=scheme, integrator=integrator)
         look["markevery"] = max(1, len(rows) // 9)
         energy.plot(*points(rows, "t", "gain"), **look)
     end = data.value("duration")
     energy.plot([0, end], [0, data.value("per_second") * end], **style.PREDICTION,
                 label="predicted: G²h²/(2m) a frame")
-    heights.set_xlim(-0.5, 28)
-    heights.set_ylim(bottom=-0.3)
-    heights.set_xlabel("bounce")
-    heights.set_ylabel("height of the apex / m")
+    heights.axhline(0.0, color="black", linewidth=0.8)
+    heights.annotate("top of the floor", (end, 0.0), fontsize=8, ha="right", va="bottom",
+                     textcoords="offset points", xytext=(0, 2))
+    heights.set_xlabel("time / s")
+    heights.set_ylabel("height of the apex, centre of the ball / m")
     heights.set_title("How high the ball comes back")
     energy.set_xlabel("time / s")
     energy.set_ylabel("energy gained / J")
@@ -46,7 +47,8 @@ def over_time(data, figures):
     figures.save(figure, "heights",
                  "Heights of successive bounces and energy over time. The integrator decides: the "
                  "thesis' own gains the same under every scheme, also where impacts are located "
-                 "exactly; one of order 2 or more gains nothing under any.")
+                 "exactly; one of order 2 or more gains nothing under any. With symplectic Euler the "
+                 "ball is turned back into the floor and sinks through it.")
 
 
 def shade(gain, start):
@@ -94,27 +96,26 @@ def every_combination(data, figures):
 
 
 def causes(data, figures):
-    figure, (bars, line) = plt.subplots(1, 2, figsize=(10.4, 3.4),
+    figure, (left, line) = plt.subplots(1, 2, figsize=(10.4, 3.4),
                                         gridspec_kw={"width_ratios": [1, 1.1]})
     named = [("energy gained", data.value("gain")), ("predicted", data.value("predicted")),
              ("ledger: truncation", data.value("truncation")),
              ("roundoff (long double)", data.value("roundoff")),
              ("roundoff (ledger)", abs(data.value("ledger_roundoff"))),
              ("impacts", data.value("impact_energy"))]
-    floor = 1e-16
+    largest = max(value for _, value in named)
     for i, (name, value) in enumerate(named):
         guess = name.startswith(("roundoff", "impacts"))
-        bars.barh([i], [max(value, floor)], height=0.62, edgecolor="black", linewidth=0.8,
-                  color="#f2dede" if guess else "#8aa0c8", hatch="///" if guess else "")
-        bars.text(max(value, floor) * 2, i, f"{value:.4g} J" if value else "exactly 0 J",
-                  va="center", fontsize=8.5)
-    bars.set_yticks(range(len(named)), [name for name, _ in named])
-    bars.invert_yaxis()
-    bars.grid(axis="y", visible=False)
-    bars.set_xscale("log")
-    bars.set_xlim(floor, 1e6)
-    bars.set_xlabel("energy / J")
-    bars.set_title("The thesis' two guesses (hatched)")
+        left.barh([i], [value], height=0.62, edgecolor="black", linewidth=0.8, color="#8aa0c8")
+        text = "exactly 0 J" if value == 0 else f"{value:.4g} J"
+        left.text(value + 0.02 * largest, i, text, va="center", fontsize=8.5,
+                  fontweight="bold" if guess else "normal")
+    left.set_yticks(range(len(named)), [name for name, _ in named])
+    left.invert_yaxis()
+    left.grid(axis="y", visible=False)
+    left.set_xlim(0, 1.3 * largest)
+    left.set_xlabel("energy / J")
+    left.set_title("The thesis' two guesses (bold)")
     rows = data.rows("precision")
     line.plot([row["t"] for row in rows], [row["difference"] for row in rows], color="black",
               linewidth=1.0)
@@ -122,5 +123,6 @@ def causes(data, figures):
     line.set_ylabel("energy, double − long double / J")
     line.set_title("Roundoff's true share")
     figures.save(figure, "causes",
-                 "Left: what each cause contributes to the energy gained. Right: the same "
-                 "arithmetic in double and in long double; the difference is roundoff, all of it.")
+                 "Left: what each cause contributes to the energy gained; the guessed ones are too "
+                 "small to be seen as bars. Right: the same arithmetic in double and in long double; "
+                 "the difference is roundoff, all of it.")

@@ -27,8 +27,9 @@ def intervals(panel, rows, column, factor, label):
     places = list(range(len(rows)))[::-1]
     for place, row in zip(places, rows):
         low, middle, high = (factor * row[column + end] for end in ("_low", "", "_high"))
-        panel.plot([low, high], [place, place], color=style.COLOURS[0], linewidth=1.6)
-        panel.plot(middle, place, "o", color=style.COLOURS[0], markerfacecolor="white")
+        look = style.look(row["method"]) | {"linestyle": "none", "label": None}
+        panel.plot([low, high], [place, place], color=look["color"], linewidth=1.6)
+        panel.plot([middle], [place], **look)
     panel.set_yticks(places, [str(row["method"]) for row in rows])
     panel.set_xlim(left=-0.02 * panel.get_xlim()[1])
     panel.set_xlabel(label)
