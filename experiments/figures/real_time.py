@@ -50,7 +50,7 @@ def late_frames(figures, rows):
                 panel.plot(range(len(settings)), values, **look_of(method, names(rows)))
             panel.set_ylabel(label)
             panel.set_title(scene)
-            panel.set_yscale("symlog", linthresh=1e-6)
+            panel.set_yscale("symlog", linthresh=0.02)  # below, linear down to 0
             panel.set_xticks(range(len(settings)), settings, fontsize=7)
     style.legend_below(figure, panels.flat, columns=4)
     figures.save(figure, "stalls", "What schemes do when frames come late: the worst of several runs.")

@@ -103,7 +103,8 @@ ThesisFigure improved_flow_of_events() {
           "The frame ends on a substep of {last} of a frame instead of {fraction}. The bullet, "
           "reflected just before, is still inside at its end, and a reflection has no approach "
           "test: it is handled {handled} times in this frame and turned back in. This is how the "
-          "cure, taken literally, still lets balls through.",
+          "cure, taken literally, lets balls through; at which speeds and thresholds, the "
+          "experiment substeps shows.",
       .script = "thesis.fig15",
       .measure = measure_substepped};
 }

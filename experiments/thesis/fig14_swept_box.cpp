@@ -75,7 +75,8 @@ ThesisFigure swept_box_of_geometric() {
               "The swept box {answer} the wall, and the contact is located at {fraction} of "
               "the frame (position 2). The thesis expects the box to be hard to build; "
               "aligned with the displacement it is a dozen lines, and the box with the body's "
-              "own axes is {ratio} times as large here.",
+              "own axes is {ratio} times as large here. What comes after that contact in the same "
+              "frame is not looked at: statement 14 of the errata.",
           .script = "thesis.fig14",
           .measure = measure};
 }

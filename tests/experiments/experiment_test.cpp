@@ -2,10 +2,14 @@
 // twice.
 
 #include "experiments/data_folders.hpp"
+#include "experiments/named_method.hpp"
 #include "experiments/output/table.hpp"
 #include "experiments/parallel_for.hpp"
 #include "experiments/programs/run_experiment.hpp"
+#include "experiments/rally/rally_run.hpp"
 #include "experiments/sweeps/sweep_plan.hpp"
+#include "experiments/tradeoff/candidates.hpp"
+#include "simulation/scene_library.hpp"
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
 
@@ -31,6 +35,39 @@ TEST_CASE("every shipped experiment can be read and planned at both sizes", "[ex
         CHECK_FALSE(plan_sweep(sweep).empty());
       }
     }
+  }
+}
+
+namespace {
+
+/// A name tells whether substeps are equal, and says so in the same two words everywhere.
+void check_name(const std::string& name, bool equal_substeps) {
+  CAPTURE(name, equal_substeps);
+  CHECK(name.starts_with("equal substeps") == equal_substeps);
+  CHECK(name.find('_') == std::string::npos);
+}
+
+}  // namespace
+
+TEST_CASE("a method has one name, in sweeps, comparisons, trade-offs and rallies", "[experiment]") {
+  for (const std::string& name : shipped_experiments()) {
+    for (const SweepSpec& sweep : read_experiment(find_experiment(name), Size::quick).sweeps) {
+      for (const PlannedRun& run : plan_sweep(sweep)) {
+        if (run.point == 0 && run.repeat == 0) {
+          check_name(sweep.methods[run.method].name, run.choice.equal_substeps);
+        }
+      }
+    }
+  }
+  for (const NamedMethod& method : compared_methods()) {
+    check_name(std::string(method.name), method.choice.equal_substeps);
+  }
+  for (const RallyMethod& method : rally_methods()) {
+    check_name(method.name, method.choice.equal_substeps);
+  }
+  const kairos::Model model(kairos::read_scene(kairos::find_scene("bounce")));
+  for (const Candidate& candidate : sensible_candidates(model)) {
+    check_name(candidate.name, candidate.choice.equal_substeps);
   }
 }
 
