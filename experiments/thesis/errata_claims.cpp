@@ -1,9 +1,9 @@
 #include "core/random.hpp"
-#include "simulation/registry.hpp"
 #include "experiments/thesis/errata.hpp"
 #include "experiments/thesis/errata_runs.hpp"
 #include "experiments/thesis/figure_data.hpp"
 #include "experiments/thesis/phase_runs.hpp"
+#include "simulation/registry.hpp"
 
 #include <cmath>
 #include <numbers>
