@@ -29,6 +29,13 @@ void Archive::count(std::size_t& n) {
   n = static_cast<std::size_t>(portable);
 }
 
+void persist(Archive& archive, bool& value) {
+  unsigned char byte = value ? 1 : 0;
+  archive.raw(&byte, sizeof byte);
+  archive.require(byte <= 1);
+  value = byte == 1;
+}
+
 void persist(Archive& archive, Quaternion& value) {
   for (int k = 0; k < 4; ++k) {
     archive(value.coeffs()[k]);

@@ -26,7 +26,8 @@ class ArchiveError : public std::runtime_error {
 /// `archive(a, b, c)` writes them, or reads them if the archive was made from bytes.
 ///
 /// Bits, not digits: what comes back is what went in, on a machine of the same kind. What a class
-/// archives is in its member `persist(Archive&)`.
+/// archives is in its member `persist(Archive&)`. Bytes may have been forged: whoever archives an
+/// index or a count checks it with `require` when reading.
 class Archive {
  public:
   /// To be written.
@@ -45,6 +46,12 @@ class Archive {
     (persist(*this, values), ...);
   }
 
+  /// Throws `ArchiveError` where something was read that cannot be. Of no meaning when writing.
+  void require(bool possible) const {
+    if (reading_ && !possible) {
+      throw ArchiveError("holds a number that cannot be");
+    }
+  }
   /// Throws `ArchiveError` where fewer bytes are left.
   void raw(void* data, std::size_t size);
   /// Number of elements that follow, each of at least one byte.
@@ -62,8 +69,20 @@ concept Persistent = requires(T& value, Archive& archive) {
 };
 
 template <typename T>
-requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+requires std::is_arithmetic_v<T>
 void persist(Archive& archive, T& value) { archive.raw(&value, sizeof value); }
+void persist(Archive& archive, bool& value);
+constexpr RotationKind last_of(RotationKind) { return RotationKind::polynomial; }
+/// An enumeration tells its last value, for what is read may be anything:
+/// `constexpr Colour last_of(Colour) { return Colour::blue; }`.
+template <typename T>
+requires std::is_enum_v<T>
+void persist(Archive& archive, T& value) {
+  archive.raw(&value, sizeof value);
+  if (archive.reading() && !(value >= T{} && value <= last_of(value))) {
+    throw ArchiveError("holds a value that does not exist");
+  }
+}
 template <Persistent T>
 void persist(Archive& archive, T& value) {
   value.persist(archive);
@@ -98,11 +117,22 @@ void persist(Archive& archive, std::array<T, N>& values) {
     archive(value);
   }
 }
+/// Where something is there already, as one element per body is, its number is part of the world
+/// and must be the same. What grows as it is read takes no more memory than it has bytes for.
 template <typename T>
 void persist(Archive& archive, std::vector<T>& values) {
-  std::size_t n = values.size();
+  const std::size_t there = values.size();
+  std::size_t n = there;
   archive.count(n);
-  values.resize(n);
+  if (there > 0 && n != there) {
+    throw ArchiveError("holds another number of things than the world has");
+  }
+  if (there == 0) {
+    for (std::size_t k = 0; k < n; ++k) {
+      archive(values.emplace_back());
+    }
+    return;
+  }
   for (T& value : values) {
     archive(value);
   }

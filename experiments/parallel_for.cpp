@@ -4,13 +4,27 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
-#include <thread>
-#include <vector>
+#include <new>
+#include <system_error>
 
 namespace kairos::experiments {
 
 std::size_t default_threads() {
   return std::max<std::size_t>(1, std::thread::hardware_concurrency());
+}
+
+std::vector<std::jthread> start_threads(std::size_t count, const std::function<void()>& work) {
+  std::vector<std::jthread> threads;
+  try {
+    threads.reserve(count);
+    for (std::size_t t = 0; t < count; ++t) {
+      threads.emplace_back(work);
+    }
+  } catch (const std::system_error&) {
+    // The system has no more to give, in threads or in memory: those that there are do the work.
+  } catch (const std::bad_alloc&) {
+  }
+  return threads;
 }
 
 void parallel_for(std::size_t count, std::size_t threads,
@@ -31,10 +45,7 @@ void parallel_for(std::size_t count, std::size_t threads,
   };
   const std::size_t wanted = std::min(threads == 0 ? default_threads() : threads, count);
   {
-    std::vector<std::jthread> others;
-    for (std::size_t t = 1; t < wanted; ++t) {
-      others.emplace_back(worker);
-    }
+    const std::vector<std::jthread> others = start_threads(wanted == 0 ? 0 : wanted - 1, worker);
     worker();
   }
   if (failure) {

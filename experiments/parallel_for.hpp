@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <functional>
+#include <thread>
+#include <vector>
 
 namespace kairos::experiments {
 
@@ -14,5 +16,10 @@ namespace kairos::experiments {
 /// that runs of different length balance. The first exception ends the loop and is rethrown.
 void parallel_for(std::size_t count, std::size_t threads,
                   const std::function<void(std::size_t)>& work);
+
+/// Starts so many threads, or as many as the system gives: the caller works too. They are joined
+/// when the vector goes; what `work` throws ends the program.
+[[nodiscard]] std::vector<std::jthread> start_threads(std::size_t count,
+                                                      const std::function<void()>& work);
 
 }  // namespace kairos::experiments

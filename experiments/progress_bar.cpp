@@ -13,7 +13,11 @@ ProgressBar::ProgressBar(std::string label, std::size_t total)
       total_(total),
       terminal_(isatty(STDERR_FILENO) == 1),
       start_(std::chrono::steady_clock::now()),
-      drawn_(start_) {}
+      drawn_(start_) {
+  if (terminal_) {
+    draw();  // the first piece of work may take long
+  }
+}
 
 ProgressBar::~ProgressBar() {
   if (terminal_) {

@@ -49,7 +49,11 @@ class HermiteMotion {
   void motions(const IslandOde& ode, bool constant_acceleration,
                std::span<const Quaternion> orientations, std::span<Motion> out) const;
 
-  void persist(Archive& archive) { archive(start_, size_, used_, times_, values_); }
+  void persist(Archive& archive) {
+    const std::size_t size = size_;
+    archive(start_, size_, used_, times_, values_);
+    archive.require(size_ == size && used_ <= times_.size());
+  }
 
  private:
   void translation(std::size_t offset, Motion& motion) const;

@@ -62,6 +62,7 @@ void RunGuard::event(const Event& event) {
 
 bool RunGuard::persist(Archive& archive) {
   archive(last_.end, last_.state, last_.ledger, last_.cost, most_energy_);
+  archive.require(last_.state.size() == model_->size());
   return inner_.persist(archive);
 }
 

@@ -40,6 +40,9 @@ void RunMetrics::Deepest::persist(Archive& archive) {
 
 bool MetricsRecorder::persist(Archive& archive) {
   archive(metrics_, overlapping_, shown_since_);
+  constexpr std::int64_t most = std::int64_t{1} << 62;
+  archive.require(metrics_.frames >= 0 && metrics_.frames < most &&
+                  metrics_.frames_overlapping >= 0 && metrics_.frames_overlapping < most);
   return true;
 }
 

@@ -12,6 +12,7 @@
 #include <charconv>
 #include <filesystem>
 #include <map>
+#include <system_error>
 
 namespace kairos {
 inline namespace core {
@@ -182,9 +183,13 @@ class DefReader {
                  const Entries& entries, std::string_view entity, Table& table) {
     const std::string path =
         (std::filesystem::path(path_).parent_path() / (name.text + ".off")).string();
-    if (!std::filesystem::is_regular_file(path)) {
+    std::error_code none;  // a name may be too long, or lead in a circle
+    if (!std::filesystem::is_regular_file(path, none)) {
       fail(name.line, prefix + "Name",
-           fmt::format("there is no {}; needed: the model, without its ending", path));
+           fmt::format("there is no {}{}; needed: the model, without its ending", path,
+                       none && none != std::errc::no_such_file_or_directory
+                           ? " (" + none.message() + ")"
+                           : std::string()));
     }
     const FittedBox box = fit_box(read_off(path));
     const Vector3 scale = scale_of(prefix, entries);

@@ -1,7 +1,9 @@
 #include "core/reading/document.hpp"
 
 #include "core/error.hpp"
+#include "core/reading/toml_nesting.hpp"
 
+#include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include <filesystem>
@@ -14,6 +16,9 @@ inline namespace core {
 namespace {
 
 using FileName = std::shared_ptr<const std::string>;
+
+/// What a person wrote is shorter, bytes: a device without an end is not read for ever.
+constexpr std::size_t longest_text = std::size_t{1} << 28;
 
 Value convert(const toml::node& node, const FileName& file);
 
@@ -122,6 +127,7 @@ std::string_view Value::type_name() const {
 }
 
 Value parse_document(std::string_view text, const std::string& file) {
+  refuse_deep_nesting(text, file);
   try {
     const toml::table root = toml::parse(text, file);
     return convert(static_cast<const toml::node&>(root), std::make_shared<const std::string>(file));
@@ -137,6 +143,7 @@ Value parse_value(std::string_view text, const std::string& origin) {
   if (text.find_first_of("\n\r") != std::string_view::npos) {
     return value;
   }
+  refuse_deep_nesting(text, origin);
   try {
     const toml::table root = toml::parse("value = " + std::string(text), origin);
     value = convert(*root.get("value"), file);
@@ -158,16 +165,29 @@ std::string read_text_file(const std::string& path) {
   if (std::filesystem::is_directory(path, ignored)) {
     throw InputError(path, 0, "", "is a directory; a file is needed");
   }
+  if (path.find('\0') != std::string::npos) {
+    throw InputError(path, 0, "", "is no path: it holds a zero byte");
+  }
   std::ifstream file(path, std::ios::binary);
   if (!file) {
     throw InputError(path, 0, "", "cannot be opened; a readable file is needed");
   }
-  std::ostringstream content;
-  content << file.rdbuf();
+  // Not through a stream into a stream: that takes a lack of memory for the end of the file.
+  std::string text;
+  std::vector<char> block(std::size_t{1} << 16);
+  while (file) {
+    file.read(block.data(), static_cast<std::streamsize>(block.size()));
+    const auto count = static_cast<std::size_t>(file.gcount());
+    if (text.size() + count > longest_text) {
+      throw InputError(path, 0, "",
+                       fmt::format("is longer than {} bytes, or has no end", longest_text));
+    }
+    text.append(block.data(), count);
+  }
   if (file.bad()) {
     throw InputError(path, 0, "", "cannot be read to its end");
   }
-  return std::move(content).str();
+  return text;
 }
 
 }  // namespace core

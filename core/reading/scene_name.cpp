@@ -19,6 +19,12 @@ bool is_name(const std::string& text) {
          text.back() != ' ' && std::all_of(text.begin(), text.end(), allowed);
 }
 
+/// In a message, which a zero byte would end.
+std::string shown(std::string text) {
+  std::replace(text.begin(), text.end(), '\0', '?');
+  return text;
+}
+
 }  // namespace
 
 const std::string& read_name(const Item& item) {
@@ -26,7 +32,7 @@ const std::string& read_name(const Item& item) {
     item.fail(
         fmt::format("\"{}\" is no name; allowed: 1 to {} letters (a-z, A-Z), digits, _, - "
                     "and inner spaces",
-                    item.text(), longest_name));
+                    shown(item.text()), longest_name));
   }
   return item.text();
 }

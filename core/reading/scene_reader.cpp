@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/exact_solution.hpp"
+#include "core/nearest_name.hpp"
 #include "core/reading/body_reader.hpp"
 #include "core/reading/def_reader.hpp"
 #include "core/reading/document.hpp"
@@ -12,7 +13,11 @@
 #include "core/reading/scene_limits.hpp"
 #include "core/reading/scene_name.hpp"
 #include "core/reading/table_reader.hpp"
+#include "core/scene.hpp"
 
+#include <fmt/format.h>
+
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 
@@ -114,6 +119,13 @@ Scene read(const TableReader& table, const std::string& path) {
     scene.frames = read_frames(*frame, defaults.directory);
   }
   if (const auto gravity = table.find("gravity")) {
+    if (std::holds_alternative<double>(gravity->value().data) ||
+        std::holds_alternative<std::int64_t>(gravity->value().data)) {
+      gravity->fail(
+          fmt::format("is {}; it says how gravity acts, allowed: {}; how strong it is, "
+                      "says G = 9.81, which points down, against y",
+                      gravity->value().type_name(), listed(gravity_names)));
+    }
     scene.gravity = static_cast<GravityMode>(gravity->choice(gravity_names));
   }
   if (const auto G = table.find("G")) {

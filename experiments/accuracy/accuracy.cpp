@@ -198,7 +198,8 @@ std::size_t measure_accuracy(const AccuracyOptions& options) {
     broken += detectors[d]->info().proves ? bad : 0;
   }
   if (!options.out.empty()) {
-    OutputFolder out(options.out);
+    OutputFolder out(options.out,
+                     {.seal = "accuracy.csv", .begins = columns, .replace = options.force});
     out.file("accuracy.csv").write(csv);
     AtomicFile& file = out.file("queries.csv");
     file.write(query_file_header());

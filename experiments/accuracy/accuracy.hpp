@@ -14,6 +14,7 @@ struct AccuracyOptions {
   std::size_t judge_every = 1;  ///< of the answers only these are held against the reference
   std::size_t threads = 0;      ///< 0: one per core
   std::string out;              ///< folder for queries.csv and accuracy.csv; none if empty
+  bool force = false;           ///< replaces whatever that holds
 };
 
 /// Draws queries over all classes of difficulty and pairs of shapes, answers them with each

@@ -1,5 +1,9 @@
 #pragma once
 
+#include "experiments/output/atomic_file.hpp"
+#include "experiments/output/file_part.hpp"
+
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -11,17 +15,18 @@ namespace kairos::experiments {
 /// set, the method, the build. Runs of the same identity give the same bytes.
 using RunIdentity = std::vector<std::pair<std::string, std::string>>;
 
-/// A checkpoint on disk: a head of text that says what it is of, then the world in binary, with
-/// its length and checksum.
+/// A checkpoint on disk: a head of text that says what it is of, the world in binary, the files of
+/// the run as far as they were written, and a checksum of all that.
 struct CheckpointFile {
   RunIdentity identity;
-  double time = 0.0;  ///< of the last frame in it, s
-  std::string world;  ///< for `Continuation::resume`
+  double time = 0.0;            ///< of the last frame in it, s
+  std::string world;            ///< for `Continuation::resume`
+  std::vector<FilePart> files;  ///< not in memory
 };
 
-/// Replaces the file in one go. Throws `RunError`.
+/// Replaces the file in one go; `files` are copied in blocks. Throws `RunError`.
 void write_checkpoint(const std::string& path, const RunIdentity& identity, double time,
-                      std::string_view world);
+                      std::string_view world, std::span<AtomicFile* const> files);
 /// Throws `InputError` where the file is none of ours, of another version, cut off or changed.
 [[nodiscard]] CheckpointFile read_checkpoint(const std::string& path);
 /// Throws `InputError` with the first thing that differs.

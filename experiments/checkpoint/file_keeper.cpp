@@ -8,7 +8,7 @@ bool FileKeeper::wants(Instant /*t*/, bool last) {
 
 void FileKeeper::keep(Instant t, std::string_view world) {
   const Clock::time_point start = Clock::now();
-  write_checkpoint(path_, identity_, t.seconds, world);
+  write_checkpoint(path_, identity_, t.seconds, world, files_);
   kept_ = true;
   since_ = Clock::now();
   // Large worlds are kept less often: at most a tenth of the time goes into it.

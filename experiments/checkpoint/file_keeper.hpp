@@ -5,6 +5,8 @@
 
 #include <chrono>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace kairos::experiments {
 
@@ -13,8 +15,13 @@ namespace kairos::experiments {
 /// When they are made does not show in what a run gives.
 class FileKeeper : public CheckpointKeeper {
  public:
-  FileKeeper(std::string path, RunIdentity identity, double interval)
-      : path_(std::move(path)), identity_(std::move(identity)), interval_(interval) {}
+  /// `files`: of the run, as far as they are written; a checkpoint holds them.
+  FileKeeper(std::string path, RunIdentity identity, std::vector<AtomicFile*> files,
+             double interval)
+      : path_(std::move(path)),
+        identity_(std::move(identity)),
+        files_(std::move(files)),
+        interval_(interval) {}
 
   [[nodiscard]] bool wants(Instant t, bool last) override;
   void keep(Instant t, std::string_view world) override;
@@ -26,6 +33,7 @@ class FileKeeper : public CheckpointKeeper {
 
   std::string path_;
   RunIdentity identity_;
+  std::vector<AtomicFile*> files_;  ///< not owned
   std::chrono::duration<double> interval_;
   Clock::time_point since_ = Clock::now();
   bool kept_ = false;

@@ -2,23 +2,15 @@
 
 #include "core/archive.hpp"
 #include "core/reading/scene_reader.hpp"
+#include "experiments/output/fingerprint.hpp"
+#include "experiments/output/text_or_nothing.hpp"
 #include "simulation/option.hpp"
 #include "simulation/version.hpp"
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <sstream>
-
 namespace kairos::experiments {
 namespace {
-
-std::string text_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return std::move(text).str();
-}
 
 /// Where a drive takes its body, at many moments: a recording may have changed under its name.
 std::string drive_fingerprint(const Drive& drive, double duration) {
@@ -42,7 +34,7 @@ RunIdentity run_identity(const Model& model, const std::vector<Override>& overri
   const Scene& scene = model.scene();
   add("scene", scene.name);
   add("bodies", fmt::format("{}", scene.bodies.size()));
-  add("scene text", fingerprint(text_of(scene.path)));
+  add("scene text", fingerprint(text_or_nothing(scene.path)));
   for (const Override& o : overrides) {
     add("--set " + o.key, o.value);
   }

@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -17,6 +18,7 @@
 #include <new>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace kairos::experiments {
@@ -24,9 +26,24 @@ namespace {
 
 enum ExitCode { done = 0, run_failed = 1, input_wrong = 2 };
 
+/// What a person wrote may be part of a message: it moves no cursor and rings no bell.
+std::string printable(std::string_view message) {
+  std::string text;
+  for (const char c : message) {
+    const auto code = static_cast<unsigned char>(c);
+    if ((code < 0x20 && c != '\n' && c != '\t') || code == 0x7f) {
+      constexpr std::string_view digits = "0123456789abcdef";
+      text += std::string("\\x") + digits[code >> 4U] + digits[code & 15U];
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
 int fail(ExitCode code, const char* message) {
   std::cout.flush();
-  std::cerr << message << '\n';
+  std::cerr << printable(message) << '\n';
   return code;
 }
 
@@ -72,6 +89,43 @@ void refuse_unknown_command(const CLI::App& app) {
                    "is neither a command nor an option; " + suggestion(words.front(), names));
 }
 
+/// What was not expected, in the order in which it was written, and what may have been meant:
+/// CLI11 tells it from behind.
+void refuse_extras(const CLI::App& app, int argc, const char* const* argv) {
+  const CLI::App* command = &app;
+  while (!command->get_subcommands().empty()) {
+    command = command->get_subcommands().front();
+  }
+  const std::vector<std::string> left = app.remaining(true);
+  std::vector<std::string> words;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (std::find(left.begin(), left.end(), word) != left.end()) {
+      words.push_back(word);
+    }
+  }
+  std::vector<std::string> options;
+  for (const CLI::Option* option : command->get_options()) {
+    for (const std::string& name : option->get_lnames()) {
+      options.push_back("--" + name);
+    }
+  }
+  const std::vector<std::string_view> names(options.begin(), options.end());
+  std::string text = "is not expected here";
+  if (words.size() > 1) {
+    text += ", nor is what follows: ";
+    for (std::size_t k = 1; k < words.size(); ++k) {
+      text += (k > 1 ? " " : "") + words[k];
+    }
+  }
+  const std::string first = words.empty() ? "" : words.front().substr(0, words.front().find('='));
+  throw InputError(
+      "", 0, words.empty() ? command->get_name() : words.front(),
+      text + "; " +
+          (first.starts_with("-") ? suggestion(first, names)
+                                  : "allowed: kairos " + command->get_name() + " --help tells it"));
+}
+
 int parse_and_run(int argc, const char* const* argv) {
   CLI::App app{"What happens between two frames, and what does it cost to know?", "kairos"};
   app.set_version_flag("--version", "kairos " + std::string(version()));
@@ -83,6 +137,8 @@ int parse_and_run(int argc, const char* const* argv) {
   } catch (const CLI::RequiredError& error) {
     refuse_unknown_command(app);
     return app.exit(error), input_wrong;
+  } catch (const CLI::ExtrasError&) {
+    refuse_extras(app, argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? flush_results() : input_wrong;
   }
@@ -100,6 +156,11 @@ int run_command_line(int argc, const char* const* argv) {
     return fail(input_wrong, error.what());
   } catch (const RunError& error) {
     return fail(run_failed, error.what());
+  } catch (const std::system_error& error) {
+    // What a formatted print throws where the disk is full.
+    const bool print = std::string_view(error.what()).starts_with("cannot write to file");
+    const std::string why = "standard output: cannot be written: " + error.code().message();
+    return fail(run_failed, print ? why.c_str() : error.what());
   } catch (const std::bad_alloc&) {
     return fail(run_failed, "out of memory");
   } catch (const std::exception& error) {

@@ -1,5 +1,6 @@
 #include "experiments/accuracy/accuracy.hpp"
 #include "experiments/bench/bench.hpp"
+#include "experiments/cli/checks.hpp"
 #include "experiments/cli/commands.hpp"
 #include "experiments/run_error.hpp"
 
@@ -53,26 +54,30 @@ void add_bench_command(CLI::App& app) {
           "reference")
       ->check(CLI::IsMember({"bounce", "ccd", "vfee", "accuracy"}));
   bench->add_option("--rounds", options->rounds, "how often each is timed")
-      ->check(CLI::Range(1, 1000))
+      ->check(whole_number(1, 1000))
       ->capture_default_str();
   bench->add_option("--pairs", options->pairs, "ccd, vfee: how many distinct pairs")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 22))
+      ->check(whole_number(1, 1 << 22))
       ->capture_default_str();
   AccuracyOptions& accuracy = options->accuracy;
   bench->add_option("--queries", accuracy.queries, "accuracy: how many")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000'000}))
+      ->check(whole_number(1, 1'000'000'000))
       ->capture_default_str();
-  bench->add_option("--seed", accuracy.seed, "accuracy: of the queries")->capture_default_str();
+  bench->add_option("--seed", accuracy.seed, "accuracy: of the queries")
+      ->check(seed_number())
+      ->capture_default_str();
   bench->add_option("--detector", accuracy.detectors, "accuracy: these only")->type_name("D...");
   bench
       ->add_option("--judge-every", accuracy.judge_every,
                    "accuracy: hold only one in N against the reference")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000'000}))
+      ->check(whole_number(1, 1'000'000'000))
       ->type_name("N");
   bench->add_option("--threads", accuracy.threads, "accuracy: how many (default: one per core)")
-      ->check(CLI::Range(std::size_t{0}, std::size_t{1024}));
+      ->check(whole_number(0, 1024));
   bench->add_option("--out", accuracy.out, "accuracy: folder for accuracy.csv and queries.csv")
-      ->type_name("DIR");
+      ->type_name("DIR")
+      ->check(some_path());
+  bench->add_flag("--force", accuracy.force, "accuracy: replace files that are not its own");
   bench->callback([options] { options->run(); });
 }
 

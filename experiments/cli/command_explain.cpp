@@ -5,10 +5,52 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
 #include <memory>
+#include <set>
+#include <string>
+#include <utility>
 
 namespace kairos::experiments {
 namespace {
+
+/// What of the speed each impact keeps: the product of both bodies, which few expect.
+void explain_restitution(const Scene& scene, const Model& model) {
+  std::map<double, std::string> free, all;  // one body of each restitution
+  for (BodyIndex i = 0; i < model.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    if (model.is_field(i) || body.entity->kind() == "hand") {
+      continue;
+    }
+    all.emplace(body.restitution, body.name);
+    if (model.is_free(i)) {
+      free.emplace(body.restitution, body.name);
+    }
+  }
+  if (free.empty() || all.empty()) {
+    return;
+  }
+  fmt::print("\nrestitution\n");
+  if (all.size() == 1 && all.begin()->first == 1.0) {
+    fmt::print(
+        "  impacts lose nothing\n      because the restitution of a body is 1 where nothing "
+        "is said, and an impact has the product of both\n");
+    return;
+  }
+  constexpr std::size_t most = 8;
+  std::set<std::pair<double, double>> told;
+  for (const auto& [e, ball] : free) {
+    for (const auto& [other, partner] : all) {
+      if (told.size() < most && told.insert(std::minmax(e, other)).second) {
+        fmt::print("  {} x {} = {:.6g}, as for {} and {}\n", e, other, e * other, ball, partner);
+      }
+    }
+  }
+  fmt::print(
+      "      because an impact has the product of both bodies' restitution under newton, 1 "
+      "for a body of which nothing is said; thesis knows none\n");
+}
 
 void explain(const SceneOptions& options) {
   const Model model(options.scene());
@@ -22,6 +64,7 @@ void explain(const SceneOptions& options) {
     }
     fmt::print("  {}\n      because {}\n", decision.text, decision.reason);
   }
+  explain_restitution(scene, model);
 }
 
 }  // namespace

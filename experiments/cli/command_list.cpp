@@ -12,9 +12,13 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cstdlib>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -151,6 +155,40 @@ constexpr std::array<Section, 10> sections{{{"schemes", list_schemes},
                                             {"figures", list_figures},
                                             {"metrics", list_metrics}}};
 
+/// Columns of the terminal that takes the output, or COLUMNS; 0: it goes to a file or a pipe.
+std::size_t terminal_width() {
+  struct winsize size {};
+  if (::isatty(STDOUT_FILENO) == 1 && ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0) {
+    return size.ws_col;
+  }
+  const char* const columns = std::getenv("COLUMNS");
+  std::size_t width = 0;
+  const std::string_view text = columns == nullptr ? "" : columns;
+  std::from_chars(text.data(), text.data() + text.size(), width);
+  return width;
+}
+
+/// In lines of at most `width` characters, broken between words; those that follow are indented.
+std::string wrapped(const std::string& line, std::size_t width) {
+  constexpr std::size_t least = 40;
+  constexpr std::size_t indent = 6;
+  if (width < least || line.size() <= width) {
+    return line;
+  }
+  std::string out;
+  std::string_view rest = line;
+  while (rest.size() + (out.empty() ? 0 : indent) > width) {
+    const std::size_t room = width - (out.empty() ? 0 : indent);
+    const std::size_t space = rest.rfind(' ', room);
+    const std::size_t end = space == std::string_view::npos || space < indent ? room : space;
+    const std::string_view head = rest.substr(0, end);
+    out += out.empty() ? "" : "\n" + std::string(indent, ' ');
+    out += head.substr(0, head.find_last_not_of(' ') + 1);
+    rest.remove_prefix(std::min(rest.find_first_not_of(' ', end), rest.size()));
+  }
+  return rest.empty() ? out : out + "\n" + std::string(indent, ' ') + std::string(rest);
+}
+
 /// For people: columns as wide as what is in them; a header where names alone do not say enough.
 void print_table(const Section& section, const Listing& listing) {
   std::vector<std::vector<std::string>> lines = listing.rows;
@@ -166,13 +204,14 @@ void print_table(const Section& section, const Listing& listing) {
     }
   }
   fmt::print("{}\n", section.name);
+  const std::size_t terminal = terminal_width();
   for (const auto& line : lines) {
     std::string text;
     for (std::size_t k = 0; k < line.size(); ++k) {
       text += fmt::format("  {:<{}}", line[k], widths[k]);
     }
     text.erase(text.find_last_not_of(' ') + 1);
-    fmt::print("{}\n", text);
+    fmt::print("{}\n", wrapped(text, terminal));
   }
 }
 

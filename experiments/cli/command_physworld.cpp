@@ -1,3 +1,4 @@
+#include "experiments/cli/checks.hpp"
 #include "experiments/cli/commands.hpp"
 #include "experiments/output/atomic_file.hpp"
 #include "experiments/physworld/search.hpp"
@@ -43,12 +44,14 @@ void add_physworld_command(CLI::App& app) {
   CLI::App* physworld = app.add_subcommand(
       "physworld", "Look for the values of physworld.def that the thesis does not give (ch. 8.1)");
   physworld->add_option("--seed", command->seed, "the same seed, the same world")
+      ->check(seed_number())
       ->capture_default_str();
   physworld->add_option("--tries", command->tries, "at most this many worlds")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{100000000}))
+      ->check(whole_number(1, 100000000))
       ->capture_default_str();
   physworld->add_option("--out", command->out, "the .def file (default: stdout)")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(some_path());
   physworld->callback([command] { command->run(); });
 }
 

@@ -1,3 +1,4 @@
+#include "experiments/cli/checks.hpp"
 #include "experiments/cli/commands.hpp"
 #include "experiments/output/atomic_file.hpp"
 #include "experiments/progress_bar.hpp"
@@ -103,10 +104,13 @@ void add_random_scenes_command(CLI::App& app) {
   CLI::App* random = app.add_subcommand(
       "random-scenes", "Run random valid scenes, watch for NaN, overlap, hangs; shrink what fails");
   random->add_option("--count", command->survey.count, "how many")
-      ->check(CLI::Range(1, 1000000000))
+      ->check(whole_number(1, 1000000000))
       ->capture_default_str();
-  random->add_option("--seed", command->survey.seed, "of the scenes")->capture_default_str();
+  random->add_option("--seed", command->survey.seed, "of the scenes")
+      ->check(seed_number())
+      ->capture_default_str();
   random->add_option("--first", command->survey.first, "number of the first one")
+      ->check(whole_number(0, std::uint64_t{1} << 62))
       ->capture_default_str();
   random->add_flag("--touching", command->survey.touching,
                    "scenes that start in touch, or come to it: stacks, rows, grooves, corners, "
@@ -114,14 +118,15 @@ void add_random_scenes_command(CLI::App& app) {
   random
       ->add_option("--threads", command->survey.threads,
                    "0: one per core; results do not depend on it")
-      ->check(CLI::Range(0, 1024))
+      ->check(whole_number(0, 1024))
       ->capture_default_str();
   random
       ->add_option("--out", command->out,
                    "folder: a summary, the scene files of failures, and the finished scenes, from "
                    "which the same command goes on when it was killed; without it, failures are "
                    "written here and nothing else is kept")
-      ->type_name("DIR");
+      ->type_name("DIR")
+      ->check(some_path());
   random->callback([command] { command->run(); });
 }
 

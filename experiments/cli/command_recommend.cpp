@@ -1,6 +1,7 @@
 #include "core/error.hpp"
 #include "core/reading/csv.hpp"
 #include "core/reading/frame_reader.hpp"
+#include "experiments/cli/checks.hpp"
 #include "experiments/cli/commands.hpp"
 #include "experiments/cli/run_options.hpp"
 #include "experiments/run_error.hpp"
@@ -59,6 +60,7 @@ Requirements RecommendCommand::requirements() const {
 void print_evidence(const Assessment& assessment, const Recommendation& found) {
   fmt::print("{:<44}{:>12}{:>11}{:>11}{:>11}  {}\n", "method", "work", "end / m", "depth / m",
              "energy", "");
+  const char* const does = found.refused.empty() ? "does" : "does up to there";
   for (const std::size_t i : found.ranked) {
     const auto& [candidate, run, errors] = assessment.methods[i];
     const bool whole = run.completed();
@@ -66,7 +68,7 @@ void print_evidence(const Assessment& assessment, const Recommendation& found) {
     fmt::print("{:<44}{:>12}{:>11}{:>11}{:>11}  {}\n", candidate.name, run.work(),
                cell(errors.position), cell(errors.penetration), cell(errors.energy),
                found.pick == i                 ? "<- cheapest that does"
-               : found.shortcomings[i].empty() ? "does"
+               : found.shortcomings[i].empty() ? does
                                                : found.shortcomings[i]);
   }
 }
@@ -77,8 +79,15 @@ void RecommendCommand::run() const {
   const double length =
       duration ? parse_duration(*duration, {"", 0, "--duration"}) : model.scene().duration;
   const Assessment assessment = assess(model, length, threads);
+  const double frame = mean_frame_duration(model.scene().frames);
+  if (wanted.budget && *wanted.budget > frame) {
+    warn(
+        fmt::format("--budget is {} s for a frame of {} s: no real time; a number without a unit "
+                    "is in seconds: --budget 1ms/frame",
+                    *wanted.budget, frame));
+  }
   const Recommendation found =
-      recommend(assessment, wanted, mean_frame_duration(model.scene().frames));
+      recommend(assessment, wanted, frame, whole_run_of(model, assessment.reference, wanted));
   std::string asked = fmt::format("{} m at the end", wanted.error);
   if (wanted.penetration) {
     asked += fmt::format(", at most {} m deep", *wanted.penetration);
@@ -89,8 +98,11 @@ void RecommendCommand::run() const {
   }
   if (found.pick) {
     const Assessed& pick = assessment.methods[*found.pick];
-    fmt::print("{}: {}\n  kairos run {} {}\n", assessment.scene, pick.candidate.name,
-               assessment.scene, pick.candidate.options());
+    fmt::print("{}: {}\n  kairos run {} {}{}\n", assessment.scene, pick.candidate.name,
+               scene.arguments(), pick.candidate.options(),
+               duration ? " --duration " + shell_word(*duration) : std::string());
+  } else if (!found.refused.empty()) {
+    fmt::print("{}: no advice: {}\n", assessment.scene, found.refused);
   } else {
     fmt::print("{}: none of {} methods does\n", assessment.scene, assessment.methods.size());
   }
@@ -99,7 +111,9 @@ void RecommendCommand::run() const {
              assessment.reference.position_uncertainty);
   print_evidence(assessment, found);
   if (!found.pick) {
-    throw RunError(fmt::format("{}: no method meets {}", assessment.scene, asked));
+    throw RunError(found.refused.empty()
+                       ? fmt::format("{}: no method meets {}", assessment.scene, asked)
+                       : fmt::format("{}: {}", assessment.scene, found.refused));
   }
 }
 
@@ -124,7 +138,7 @@ void add_recommend_command(CLI::App& app) {
   recommend
       ->add_option("--threads", command->threads,
                    "0: one per core; the answer does not depend on it")
-      ->check(CLI::Range(0, 1024))
+      ->check(whole_number(0, 1024))
       ->capture_default_str();
   recommend->callback([command] { command->run(); });
 }

@@ -1,6 +1,7 @@
 #include "core/error.hpp"
 #include "core/frame_times.hpp"
 #include "core/reading/frame_reader.hpp"
+#include "experiments/cli/checks.hpp"
 #include "experiments/cli/commands.hpp"
 #include "experiments/render/render.hpp"
 #include "experiments/run_error.hpp"
@@ -91,7 +92,9 @@ void RenderCommand::run() {
   if (count > 1 && make_film(out, film_rate)) {
     fmt::print("film -> {}\n", (std::filesystem::path(out) / "film.mp4").string());
   } else if (count > 1) {
-    fmt::print(stderr, "no film: ffmpeg is not found\n");
+    fmt::print(
+        stderr,
+        "no film: ffmpeg is not found; install it (Debian, Ubuntu: apt-get install ffmpeg)\n");
   }
 }
 
@@ -111,9 +114,11 @@ void add_render_command(CLI::App& app) {
       ->type_name("TRAJECTORY");
   render->add_option("--out", command->out, "folder for frame-00000.png and so on")
       ->required()
-      ->type_name("DIR");
+      ->type_name("DIR")
+      ->check(some_path());
   render->add_option("--beside", command->beside, "another run, drawn to the right of this one")
-      ->type_name("TRAJECTORY");
+      ->type_name("TRAJECTORY")
+      ->check(some_path());
   option("--from", command->from, "time of the first picture (default: the first frame)", "T");
   option("--to", command->to, "time of the last picture (default: the last frame)", "T");
   option("--every", command->every, "time between pictures (default: each drawn frame)", "T");
@@ -124,7 +129,7 @@ void add_render_command(CLI::App& app) {
   render->add_flag("--no-boxes", command->no_boxes,
                    "without the boxes that round bodies collide as");
   render->add_option("--film-rate", command->film_rate, "pictures per second of the film")
-      ->check(CLI::Range(1.0, 240.0))
+      ->check(finite_number(1.0, 240.0))
       ->capture_default_str();
   render->callback([command] { command->run(); });
 }

@@ -1,5 +1,6 @@
 #include "core/error.hpp"
 #include "core/nearest_name.hpp"
+#include "experiments/cli/checks.hpp"
 #include "experiments/cli/commands.hpp"
 #include "experiments/cli/experiment_options.hpp"
 #include "experiments/data_folders.hpp"
@@ -75,7 +76,7 @@ void ReproduceCommand::make(const ExperimentSpec& spec, const fs::path& folder) 
   std::fflush(stdout);
   const std::string command =
       fmt::format("kairos experiment {} --{}", spec.name, to_string(size.size()));
-  run_and_tell(spec, {size.size(), size.threads, command}, folder.string());
+  run_and_tell(spec, {size.size(), size.threads, command, size.force}, folder.string());
   std::fflush(stdout);
 }
 
@@ -121,6 +122,7 @@ void add_reproduce_command(CLI::App& app) {
       ->type_name("NAME");
   reproduce->add_option("--out", command->out, "the report goes to DIR/report/index.html")
       ->type_name("DIR")
+      ->check(some_path())
       ->capture_default_str();
   command->size.add_to(*reproduce);
   reproduce->callback([command] { command->run(); });

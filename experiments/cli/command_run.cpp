@@ -2,14 +2,15 @@
 #include "core/error.hpp"
 #include "experiments/checkpoint/file_keeper.hpp"
 #include "experiments/checkpoint/run_identity.hpp"
+#include "experiments/cli/checks.hpp"
 #include "experiments/cli/commands.hpp"
 #include "experiments/cli/run_options.hpp"
+#include "experiments/cli/run_progress.hpp"
 #include "experiments/output/atomic_file.hpp"
 #include "experiments/output/broadcast.hpp"
 #include "experiments/output/output_folder.hpp"
 #include "experiments/output/run_files.hpp"
 #include "experiments/output/run_summary.hpp"
-#include "experiments/progress_bar.hpp"
 #include "experiments/run_error.hpp"
 #include "simulation/run_metrics.hpp"
 
@@ -17,61 +18,25 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <chrono>
-#include <cstdint>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace kairos::experiments {
 namespace {
 
-/// Shows a person how far the run has come: frames, simulated time, and events a second, so that a
-/// run that crawls is seen to, between two frames as well.
-class ProgressRecorder : public Recorder {
- public:
-  explicit ProgressRecorder(std::size_t frames) : frames_(frames), bar_("run", frames) {}
-
-  void frame(const Frame& frame) override {
-    if (drawn_ < frames_) {  // frame times that vary can be more than their mean tells
-      ++drawn_;
-      bar_.advance();
-    }
-    say(frame.time);
+/// What is allowed and hardly meant.
+void warn_of_frames(const Scene& scene, const RunChoice& choice) {
+  const double frame = mean_frame_duration(choice.frames.value_or(scene.frames));
+  const double duration = choice.duration.value_or(scene.duration);
+  if (frame > duration) {
+    warn(
+        fmt::format("a frame is {} s, longer than the run, {} s; a number without a unit is in "
+                    "seconds: --frame 16ms, --frame 1/60",
+                    frame, duration));
   }
-  void event(const Event& event) override {
-    ++events_;
-    say(event.time);
-  }
-  bool persist(Archive& /*archive*/) override { return true; }
-
- private:
-  using Clock = std::chrono::steady_clock;
-
-  /// Ten times a second: events a second since the last time.
-  void say(Instant t) {
-    const double seconds = std::chrono::duration<double>(Clock::now() - said_).count();
-    if (seconds > 0.1) {
-      const auto news = static_cast<double>(events_ - said_events_);
-      bar_.say(fmt::format("t = {:.6g} s, {:.0f} events/s", t.seconds, news / seconds));
-      said_ = Clock::now();
-      said_events_ = events_;
-    }
-  }
-
-  Clock::time_point said_ = Clock::now();
-  std::int64_t events_ = 0;
-  std::int64_t said_events_ = 0;
-  std::size_t frames_;
-  std::size_t drawn_ = 0;
-  ProgressBar bar_;
-};
-
-std::size_t expected_frames(const Scene& scene, const RunChoice& choice) {
-  return static_cast<std::size_t>(choice.duration.value_or(scene.duration) /
-                                  mean_frame_duration(choice.frames.value_or(scene.frames))) +
-         1;
 }
 
 struct RunCommand {
@@ -81,10 +46,10 @@ struct RunCommand {
   std::string save;
   double save_interval = 10.0;  ///< s
   std::string resume;
+  bool force = false;  ///< whatever --out holds is replaced
 
   void run() const;
   [[nodiscard]] CheckpointFile checkpoint(const Model& model, const RunIdentity& identity) const;
-  [[nodiscard]] std::string scratch_folder() const;
   [[nodiscard]] RunResult go(const Model& model, const RunChoice& choice, Recorder& recorder,
                              FileKeeper& keeper, std::string_view begun) const;
 };
@@ -104,11 +69,39 @@ CheckpointFile RunCommand::checkpoint(const Model& model, const RunIdentity& ide
   return file;
 }
 
-/// A checkpoint holds all files of its run, wanted or not: where they grow until it is written.
-std::string RunCommand::scratch_folder() const {
-  const std::filesystem::path folder = std::filesystem::path(save).parent_path();
-  return folder.empty() ? "." : folder.string();
-}
+/// Where the files of a run grow: in the folder that will hold them, or, where only a checkpoint
+/// wants them, without a name beside it.
+class RunOutput {
+ public:
+  RunOutput(const std::optional<std::string>& out, const std::string& save, bool force) {
+    if (out) {
+      folder_.emplace(*out, run_output(force));
+      folder_->claim("summary.json");
+    }
+    for (const std::string_view name : RunFiles::names) {
+      if (folder_) {
+        files_.push_back(&folder_->file(name));
+      } else if (!save.empty()) {
+        unnamed_.push_back(std::make_unique<AtomicFile>(fmt::format("{}.{}", save, name)));
+        files_.push_back(unnamed_.back().get());
+      }
+    }
+  }
+
+  /// Three, or none: nobody wants them.
+  [[nodiscard]] const std::vector<AtomicFile*>& files() const { return files_; }
+  void publish(const std::string& summary) {
+    if (folder_) {
+      folder_->file("summary.json").write(summary);
+      folder_->publish();
+    }
+  }
+
+ private:
+  std::optional<OutputFolder> folder_;
+  std::vector<std::unique_ptr<AtomicFile>> unnamed_;
+  std::vector<AtomicFile*> files_;
+};
 
 void RunCommand::run() const {
   const RunChoice choice = method.choice();
@@ -121,33 +114,28 @@ void RunCommand::run() const {
   }
   const RunIdentity identity = run_identity(model, scene.overrides(), choice);
   const CheckpointFile begun = checkpoint(model, identity);
+  warn_of_frames(model.scene(), choice);
 
   MetricsRecorder metrics;
   std::vector<Recorder*> listeners{&metrics};
-  std::optional<OutputFolder> folder;
+  RunOutput output(out, save, force);
   std::optional<RunFiles> files;
-  NoRunFiles no_files;
-  if (out || !save.empty()) {
-    folder.emplace(out.value_or(scratch_folder()));
-    files.emplace(*folder);
+  if (!output.files().empty()) {
+    files.emplace(*output.files()[0], *output.files()[1], *output.files()[2]);
+    files->go_on_from(begun.files);
     listeners.push_back(&*files);
-  } else if (!resume.empty()) {
-    listeners.push_back(&no_files);
   }
-  std::optional<ProgressRecorder> progress;
+  std::optional<RunProgress> progress;
   if (::isatty(STDERR_FILENO) == 1) {
-    listeners.push_back(&progress.emplace(expected_frames(model.scene(), choice)));
+    listeners.push_back(&progress.emplace(choice.duration.value_or(model.scene().duration)));
   }
   Broadcast recorder(listeners);
-  FileKeeper keeper(save, identity, save_interval);
+  FileKeeper keeper(save, identity, output.files(), save_interval);
   const RunResult result = go(model, choice, recorder, keeper, begun.world);
   progress.reset();
 
   const FinishedRun finished{model, choice, result, metrics.metrics()};
-  if (out) {
-    folder->file("summary.json").write(summary_json(finished));
-    folder->publish();
-  }
+  output.publish(out ? summary_json(finished) : std::string());
   fmt::print("{}", summary_text(finished));
   if (result.status == RunStatus::stopped) {
     throw RunError(fmt::format("{}: stopped at t = {} s: {}", model.scene().path,
@@ -173,18 +161,23 @@ void add_run_command(CLI::App& app) {
   command->method.add_to(*run);
   run->add_option("--out", command->out,
                   "folder for trajectory.csv, events.csv, energy.csv and summary.json")
-      ->type_name("DIR");
+      ->type_name("DIR")
+      ->check(some_path());
+  run->add_flag("--force", command->force,
+                "replace what --out holds, even if no earlier run has written it");
   run->add_option("--save", command->save,
                   "keep a checkpoint of the run in this file: now and then, and at the end")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(some_path());
   run->add_option("--save-interval", command->save_interval,
                   "seconds of real time between checkpoints; 0: after every frame")
-      ->check(CLI::NonNegativeNumber)
+      ->check(finite_number(0.0, 1e9))
       ->capture_default_str();
   run->add_option("--resume", command->resume,
                   "go on from a checkpoint of the same scene and method, to the end or beyond; "
                   "gives the bytes of a run that was never interrupted")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(some_path());
   run->callback([command] { command->run(); });
 }
 

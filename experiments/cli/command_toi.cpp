@@ -1,5 +1,6 @@
 #include "core/error.hpp"
 #include "core/reading/csv.hpp"
+#include "experiments/cli/checks.hpp"
 #include "experiments/cli/commands.hpp"
 #include "experiments/toi/toi_stream.hpp"
 #include "simulation/registry.hpp"
@@ -81,7 +82,7 @@ void add_toi_command(CLI::App& app) {
       ->type_name("X");
   toi->add_option("--threads", command->threads, "how many (default: one per core)")
       ->type_name("N")
-      ->check(CLI::Range(std::size_t{0}, std::size_t{1024}));
+      ->check(whole_number(0, 1024));
   toi->add_flag(
       "--keep-going", command->keep_going,
       "name bad rows, answer them with the status `invalid`, and go on; the exit status is "

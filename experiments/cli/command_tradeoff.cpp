@@ -1,4 +1,5 @@
 #include "core/reading/frame_reader.hpp"
+#include "experiments/cli/checks.hpp"
 #include "experiments/cli/commands.hpp"
 #include "experiments/cli/run_options.hpp"
 #include "experiments/data_folders.hpp"
@@ -20,6 +21,7 @@ struct TradeoffCommand {
   SceneOptions scene;
   std::optional<std::string> duration;
   std::string out;
+  bool force = false;
   std::size_t threads = 0;
   int rounds = 3;
 
@@ -65,9 +67,11 @@ void TradeoffCommand::run() const {
   }
   ExperimentSpec spec = read_experiment(find_experiment("tradeoff"), Size::quick);
   spec.scenes = {assessment.scene};
-  const std::string command = fmt::format("kairos tradeoff {} --out DIR", assessment.scene);
+  const std::string command =
+      fmt::format("kairos tradeoff {}{} --out DIR", scene.arguments(),
+                  duration ? " --duration " + shell_word(*duration) : std::string());
   const ExperimentOutcome outcome =
-      publish_program(spec, {.command = command},
+      publish_program(spec, {.command = command, .force = force},
                       tradeoff_output({assessment}, timing_table(model, assessment, rounds)), out);
   if (!outcome.figure_problem.empty()) {
     fmt::print(stderr, "tradeoff: {}\n", outcome.figure_problem);
@@ -84,13 +88,16 @@ void add_tradeoff_command(CLI::App& app) {
   tradeoff->add_option("--duration", command->duration, "how long, s or with a unit")
       ->type_name("T");
   tradeoff->add_option("--out", command->out, "folder for tables, measured times and figures")
-      ->type_name("DIR");
+      ->type_name("DIR")
+      ->check(some_path());
+  tradeoff->add_flag("--force", command->force,
+                     "replace files in that folder that no experiment has written");
   tradeoff->add_option("--rounds", command->rounds, "with --out: how often each method is timed")
-      ->check(CLI::Range(1, 100))
+      ->check(whole_number(1, 100))
       ->capture_default_str();
   tradeoff
       ->add_option("--threads", command->threads, "0: one per core; results do not depend on it")
-      ->check(CLI::Range(0, 1024))
+      ->check(whole_number(0, 1024))
       ->capture_default_str();
   tradeoff->callback([command] { command->run(); });
 }

@@ -1,4 +1,5 @@
 #include "core/error.hpp"
+#include "experiments/cli/checks.hpp"
 #include "experiments/cli/commands.hpp"
 #include "experiments/vfee/vfee_stream.hpp"
 
@@ -56,7 +57,7 @@ void add_vfee_command(CLI::App& app) {
       ->type_name("K");
   vfee->add_option("--threads", command->options.threads, "how many (default: one per core)")
       ->type_name("N")
-      ->check(CLI::Range(std::size_t{0}, std::size_t{1024}));
+      ->check(whole_number(0, 1024));
   vfee->add_flag("--keep-going", command->options.keep_going,
                  "name bad rows, answer them with the stage `invalid`, and go on; the exit status "
                  "is still 2");

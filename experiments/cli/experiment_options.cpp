@@ -1,5 +1,6 @@
 #include "experiments/cli/experiment_options.hpp"
 
+#include "experiments/cli/checks.hpp"
 #include "experiments/programs/run_experiment.hpp"
 
 #include <CLI/CLI.hpp>
@@ -11,8 +12,9 @@ void SizeOptions::add_to(CLI::App& command) {
   CLI::Option* quick_flag =
       command.add_flag("--quick", quick, "the small size of the spec (the default)");
   command.add_flag("--full", full, "the full size")->excludes(quick_flag);
+  command.add_flag("--force", force, "replace files that no earlier experiment has written");
   command.add_option("--threads", threads, "0: one per core; results do not depend on it")
-      ->check(CLI::Range(0, 1024))
+      ->check(whole_number(0, 1024))
       ->capture_default_str();
 }
 

@@ -15,6 +15,7 @@ struct SizeOptions {
   bool quick = false;
   bool full = false;
   std::size_t threads = 0;
+  bool force = false;  ///< whatever the folder holds is replaced
 
   void add_to(CLI::App& command);
   [[nodiscard]] Size size() const { return full ? Size::full : Size::quick; }

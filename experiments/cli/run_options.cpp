@@ -97,6 +97,27 @@ std::vector<Override> SceneOptions::overrides() const {
   return overrides;
 }
 
+std::string shell_word(const std::string& text) {
+  constexpr std::string_view plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
+  if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) {
+    return text;
+  }
+  std::string quoted = "'";
+  for (const char c : text) {
+    quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  }
+  return quoted + '\'';
+}
+
+std::string SceneOptions::arguments() const {
+  std::string text = shell_word(scene_);
+  for (const std::string& setting : settings_) {
+    text += " --set " + shell_word(setting);
+  }
+  return text;
+}
+
 void RunOptions::add_to(CLI::App& command) {
   for (const Option& option : options()) {
     const std::string flag = "--" + std::string(option.flag);

@@ -24,11 +24,16 @@ class SceneOptions {
   [[nodiscard]] Scene scene() const;
   /// What --set replaces. Throws `InputError`.
   [[nodiscard]] std::vector<Override> overrides() const;
+  /// The scene and its --set as they were given, for a shell: a command to be copied.
+  [[nodiscard]] std::string arguments() const;
 
  private:
   std::string scene_;
   std::vector<std::string> settings_;
 };
+
+/// A word as a shell takes it verbatim, in quotes where it must be.
+[[nodiscard]] std::string shell_word(const std::string& text);
 
 /// The options that name a method: shared by every command that runs one.
 class RunOptions {

@@ -5,8 +5,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <system_error>
 
 namespace kairos::experiments {
 
@@ -37,17 +39,22 @@ std::string draw_figures(const std::string& script, const std::string& folder) {
   if (scripts.empty()) {
     return "no figures: the folder of figure scripts is missing";
   }
+  const std::string name = script.empty() ? "lines" : script;
+  std::string module = name;  // as Python imports it
+  std::replace(module.begin(), module.end(), '-', '_');
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(std::filesystem::path(scripts) / (module + ".py"), none)) {
+    return fmt::format("no figures: there is no script '{}'", name);
+  }
   const std::string python = find_python();
   if (python.empty()) {
     return "no figures: no python3 with matplotlib was found; set KAIROS_PYTHON to one";
   }
   // -B: leave no compiled files beside the sources.
-  const int code = run_child({python, "-B", (std::filesystem::path(scripts) / "draw.py").string(),
-                              script.empty() ? "lines" : script, folder},
-                             ChildOutput::shown);
-  return code == 0 ? ""
-                   : fmt::format("no figures: the script '{}' ended with code {}",
-                                 script.empty() ? "lines" : script, code);
+  const int code =
+      run_child({python, "-B", (std::filesystem::path(scripts) / "draw.py").string(), name, folder},
+                ChildOutput::shown);
+  return code == 0 ? "" : fmt::format("no figures: the script '{}' ended with code {}", name, code);
 }
 
 }  // namespace kairos::experiments

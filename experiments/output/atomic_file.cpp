@@ -7,12 +7,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <cstddef>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 namespace kairos::experiments {
 namespace {
@@ -45,6 +46,9 @@ std::string temporary_name(const std::string& path) {
 /// Where the file will be: the end of symbolic links, so that they stay. A device, a pipe or a
 /// folder is refused: renaming over one would destroy it.
 std::string target(const std::string& path) {
+  if (path.find('\0') != std::string::npos) {
+    throw InputError(path, 0, "", "is no path: it holds a zero byte");
+  }
   std::error_code none;
   const std::filesystem::file_status status = std::filesystem::status(path, none);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
@@ -101,27 +105,36 @@ void AtomicFile::flush() {
   buffer_.clear();
 }
 
-std::string AtomicFile::contents() {
+std::size_t AtomicFile::size() {
   flush();
   const ::off_t size = ::lseek(descriptor_, 0, SEEK_END);
-  std::string text(static_cast<std::size_t>(size < 0 ? 0 : size), '\0');
-  for (std::size_t done = 0; done < text.size();) {
-    const ::ssize_t got =
-        ::pread(descriptor_, text.data() + done, text.size() - done, static_cast<::off_t>(done));
+  if (size < 0) {
+    fail(path_);
+  }
+  return static_cast<std::size_t>(size);
+}
+
+void AtomicFile::read(const std::function<void(std::string_view)>& take) {
+  const std::size_t end = size();
+  std::vector<char> block(buffer_size);
+  for (std::size_t done = 0; done < end;) {
+    const ::ssize_t got = ::pread(descriptor_, block.data(), std::min(block.size(), end - done),
+                                  static_cast<::off_t>(done));
     if (got == 0 || (got < 0 && errno != EINTR)) {
       fail(path_);
     }
-    done += got < 0 ? 0 : static_cast<std::size_t>(got);
+    const auto count = static_cast<std::size_t>(got < 0 ? 0 : got);
+    take({block.data(), count});
+    done += count;
   }
-  return text;
 }
 
-void AtomicFile::restore(std::string_view text) {
+void AtomicFile::restore(const FilePart& part) {
   buffer_.clear();
   if (::ftruncate(descriptor_, 0) != 0 || ::lseek(descriptor_, 0, SEEK_SET) != 0) {
     fail(path_);
   }
-  write(text);
+  part.file->read(part.begin, part.count, [this](std::string_view block) { write(block); });
 }
 
 void AtomicFile::finish() {

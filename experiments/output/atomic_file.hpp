@@ -1,5 +1,9 @@
 #pragma once
 
+#include "experiments/output/file_part.hpp"
+
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -20,10 +24,13 @@ class AtomicFile {
 
   /// Appends. Throws `RunError` where the disk does not take it.
   void write(std::string_view text);
-  /// What was written so far. Throws `RunError`.
-  [[nodiscard]] std::string contents();
-  /// Makes this what was written so far. Throws `RunError`.
-  void restore(std::string_view text);
+  /// Bytes written so far. Throws `RunError`.
+  [[nodiscard]] std::size_t size();
+  /// What was written so far, in blocks, in constant memory. Throws `RunError`.
+  void read(const std::function<void(std::string_view)>& take);
+  /// Makes this what was written so far. Throws `RunError`, or `InputError` where it cannot be
+  /// read.
+  void restore(const FilePart& part);
   /// Writes what is buffered and waits until the disk has it. Throws `RunError`.
   void finish();
   /// Gives the file its name, replacing one that has it. Call after `finish`. Throws `RunError`.

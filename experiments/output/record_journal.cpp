@@ -2,6 +2,8 @@
 
 #include "core/archive.hpp"
 #include "core/error.hpp"
+#include "experiments/output/file_part.hpp"
+#include "experiments/output/fingerprint.hpp"
 #include "experiments/run_error.hpp"
 
 #include <fcntl.h>
@@ -11,8 +13,7 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <sstream>
+#include <filesystem>
 #include <system_error>
 
 namespace kairos::experiments {
@@ -65,10 +66,15 @@ RecordJournal::RecordJournal(std::string path, const std::string& key) : path_(s
 RecordJournal::~RecordJournal() { ::close(descriptor_); }
 
 void RecordJournal::load(const std::string& key) {
-  std::ifstream in(path_, std::ios::binary);
-  std::ostringstream all;
-  all << in.rdbuf();
-  const std::string bytes = std::move(all).str();
+  std::error_code none;
+  if (!std::filesystem::exists(path_, none)) {
+    return;
+  }
+  std::string bytes;
+  {
+    const OpenFile file(path_);
+    bytes = file.text(0, file.size());
+  }
   std::string_view text = bytes;
   if (next_record(text) != key) {
     return;

@@ -30,10 +30,9 @@ std::string energy_columns() {
 
 }  // namespace
 
-RunFiles::RunFiles(OutputFolder& folder)
-    : trajectory_(folder.file("trajectory.csv")),
-      events_(folder.file("events.csv")),
-      energy_(folder.file("energy.csv")) {}
+OutputSet run_output(bool replace) {
+  return {.seal = "summary.json", .begins = "{\n  \"scene\": {", .replace = replace};
+}
 
 void RunFiles::begin(const Model& model) {
   model_ = &model;
@@ -67,20 +66,10 @@ void RunFiles::write_energy(const Frame& frame) {
 }
 
 bool RunFiles::persist(Archive& archive) {
-  for (AtomicFile* file : {&trajectory_, &events_, &energy_}) {
-    std::string text = archive.reading() ? std::string() : file->contents();
-    archive(text);
-    if (archive.reading()) {
-      file->restore(text);
-    }
-  }
-  return true;
-}
-
-bool NoRunFiles::persist(Archive& archive) {
-  for (int file = 0; file < 3; ++file) {
-    std::string text;
-    archive(text);
+  if (archive.reading() && begun_.size() == names.size()) {
+    trajectory_.restore(begun_[0]);
+    events_.restore(begun_[1]);
+    energy_.restore(begun_[2]);
   }
   return true;
 }

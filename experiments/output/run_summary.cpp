@@ -119,7 +119,8 @@ void add_metrics(JsonWriter& json, const FinishedRun& run) {
   json.open("metrics");
   const RunMetrics::Deepest& deepest = metrics.deepest();
   json.number("max_depth", deepest.depth);
-  if (deepest.pair) {
+  const std::size_t n = run.model.size();  // a checkpoint may have been forged
+  if (deepest.pair && deepest.pair->first < n && deepest.pair->second < n) {
     json.number("time_of_max_depth", deepest.time);
     json.text("deepest_a", run.model.body(deepest.pair->first).name);
     json.text("deepest_b", run.model.body(deepest.pair->second).name);

@@ -5,9 +5,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <stdexcept>
+#include <system_error>
 
 namespace kairos::experiments {
 namespace {
@@ -103,8 +104,9 @@ std::size_t Table::column(const std::string& name) const {
 }
 
 Table read_csv(const std::string& path) {
+  std::error_code none;
   std::ifstream in(path, std::ios::binary);
-  if (!in) {
+  if (!in || !std::filesystem::is_regular_file(path, none)) {  // what has no end is no table
     throw InputError(path, 0, "", "cannot be read");
   }
   Table table;

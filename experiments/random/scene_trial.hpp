@@ -24,6 +24,7 @@ enum class Fate {
   invalid,     ///< refused: the scene is wrong, which is the generator's mistake
   law,         ///< an impact of two that part, or a rebound that breaks restitution
 };
+constexpr Fate last_of(Fate) { return Fate::law; }
 inline constexpr std::array all_fates{Fate::right, Fate::not_finite, Fate::overlap, Fate::ledger,
                                       Fate::hang,  Fate::law,        Fate::invalid, Fate::stopped};
 [[nodiscard]] std::string_view to_string(Fate fate);

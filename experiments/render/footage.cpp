@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/reading/csv.hpp"
 #include "core/reading/document.hpp"
+#include "experiments/output/output_folder.hpp"
 #include "experiments/output/table.hpp"
 
 #include <fmt/format.h>
@@ -62,8 +63,7 @@ class Rows {
 /// The bodies of a `summary.json`, which holds one member a line, as `JsonWriter` writes it.
 class Summary {
  public:
-  explicit Summary(const std::string& path) : path_(path) {
-    const std::string text = read_text_file(path);
+  Summary(const std::string& path, std::string_view text) : path_(path) {
     std::string_view rest = text;
     std::vector<std::string> open;
     for (int line = 1; !rest.empty(); ++line) {
@@ -176,6 +176,7 @@ class Summary {
     const bool as_box = field(body, "bounds") == "obb" && shape != "half-space";
     actor.collides_as = as_box ? Shape(bounding_box(actor.shape)) : actor.shape;
     actor.is_free = field(body, "moves") == "free";
+    actor.moves = field(body, "moves") != "fixed";
     actor.is_field = field(body, "field") == "true";
     return actor;
   }
@@ -226,7 +227,7 @@ std::vector<Actor> actors_of(const Model& model) {
   for (BodyIndex i = 0; i < model.size(); ++i) {
     const Body& body = model.body(i);
     actors.push_back({body.name, std::string(body.entity->kind()), body.shape, model.shape(i),
-                      model.is_free(i), model.is_field(i)});
+                      model.is_free(i), model.is_field(i), model.mobility(i) != Mobility::fixed});
   }
   return actors;
 }
@@ -257,9 +258,16 @@ Footage read_footage(const std::string& path) {
     }
   }
   Footage footage;
-  footage.title = fs::absolute(trajectory).parent_path().filename().string();
-  footage.actors = Summary(summary.string()).actors();
+  const fs::path absolute = fs::absolute(trajectory, error);
+  footage.title = absolute.parent_path().filename().string();
+  const std::string before = read_text_file(summary.string());
+  footage.actors = Summary(summary.string(), before).actors();
   read_pictures(Rows(trajectory.string()), footage);
+  if (incomplete(summary.parent_path()) || read_text_file(summary.string()) != before) {
+    throw InputError(summary.string(), 0, "",
+                     "belongs to other files than lie beside it: a run was writing them, or was "
+                     "killed as it did; run it again");
+  }
   if (footage.pictures.empty()) {
     throw InputError(trajectory.string(), 0, "", "holds no frame");
   }

@@ -16,6 +16,7 @@ struct Actor {
   Shape collides_as;     ///< its box where it collides as one
   bool is_free = false;  ///< moved by forces and impacts
   bool is_field = false;
+  bool moves = false;  ///< free or driven
 };
 
 /// A run as a person saw it: bodies, and where they were in each drawn frame.

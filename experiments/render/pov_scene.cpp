@@ -175,13 +175,7 @@ class Painter {
     const Actor& actor = footage_.actors[i];
     const Pose& pose = picture_.poses[i];
     if (const auto* half_space = std::get_if<HalfSpace>(&actor.shape)) {
-      // The pattern lies in the plane: y is turned to the normal.
-      const Quaternion up(Quaternion::FromTwoVectors(Vector3::UnitY(), half_space->normal_B));
-      const Pose plane{pose.position, pose.orientation * up};
-      return fmt::format(
-          "plane {{ y, 0 pigment {{ checker color rgb 0.82 color rgb 0.74 scale "
-          "{:.9g} }} {} }}\n",
-          25.0 * thickness_, matrix(plane));
+      return plane(*half_space, pose);
     }
     const auto* box = std::get_if<Box>(&actor.shape);
     const bool is_bat = box != nullptr && actor.entity == "bat";
@@ -206,12 +200,45 @@ class Painter {
     return text;
   }
 
+  /// A wall without an end: left out where it would stand between the eye and all else, pale where
+  /// something is behind it.
+  [[nodiscard]] std::string plane(const HalfSpace& half_space, const Pose& pose) const {
+    const Vector3 normal = half_space_normal(half_space, pose);
+    const auto behind = [&](const Vector3& p) { return normal.dot(p - pose.position) < 0.0; };
+    if (behind(options_.camera.position)) {
+      return {};
+    }
+    // The pattern lies in the plane: y is turned to the normal.
+    const Quaternion up(Quaternion::FromTwoVectors(Vector3::UnitY(), half_space.normal_B));
+    bool hides = false;
+    for (std::size_t i = 0; i < footage_.actors.size(); ++i) {
+      hides = hides || (footage_.actors[i].is_free && behind(picture_.poses[i].position));
+    }
+    const double transmit = hides ? 0.5 : 0.0;
+    return fmt::format(
+        "plane {{ y, 0 pigment {{ checker color rgb 0.82 transmit {} color rgb 0.74 transmit {} "
+        "scale {:.9g} }} {} }}\n",
+        transmit, transmit, 25.0 * thickness_, matrix({pose.position, pose.orientation * up}));
+  }
+
   std::string in_common(const Overlapping& pair) const {
     std::string text = "intersection {\n";
     for (const std::size_t i : {pair.a, pair.b}) {
       text += solid(footage_.actors[i].collides_as) + matrix(picture_.poses[i]) + " }\n";
     }
     return text + "pigment { color rgb <1,0,0.8> } finish { emission 1 } no_shadow }\n";
+  }
+
+  /// As POV-Ray reads a string: the name of a folder is no part of the script.
+  static std::string quoted(std::string_view text) {
+    std::string out = "\"";
+    for (const char c : text) {
+      if (c == '"' || c == '\\') {
+        out += '\\';
+      }
+      out += c >= ' ' && c <= '~' ? c : '?';
+    }
+    return out + '"';
   }
 
   /// Close before the eye.
@@ -233,12 +260,12 @@ class Painter {
     const Vector3 y = near * size * up;
     const Vector3 z = 1e-3 * near * size * ahead;
     return fmt::format(
-        "text {{ internal 1 \"{}\", 1, 0 pigment {{ color rgb 0.02 }} finish {{ emission 0.02 "
+        "text {{ internal 1 {}, 1, 0 pigment {{ color rgb 0.02 }} finish {{ emission 0.02 "
         "diffuse "
         "0 }} no_shadow matrix <{:.9g},{:.9g},{:.9g}, {:.9g},{:.9g},{:.9g}, {:.9g},{:.9g},{:.9g}, "
         "{:.9g},{:.9g},{:.9g}> }}\n",
-        text, x.x(), x.y(), x.z(), y.x(), y.y(), y.z(), z.x(), z.y(), z.z(), corner.x(), corner.y(),
-        corner.z());
+        quoted(text), x.x(), x.y(), x.z(), y.x(), y.y(), y.z(), z.x(), z.y(), z.z(), corner.x(),
+        corner.y(), corner.z());
   }
 
   const Footage& footage_;
@@ -284,28 +311,52 @@ Camera parse_camera(std::string_view text) {
   return camera;
 }
 
-Camera camera_for(const Footage& footage, std::size_t first, std::size_t last) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Vector3 low = Vector3::Constant(infinity);
+namespace {
+
+/// The box around what is looked at.
+struct Extent {
+  Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity());
   Vector3 high = -low;
-  for (std::size_t k = first; k <= last; ++k) {
-    for (std::size_t i = 0; i < footage.actors.size(); ++i) {
-      const double radius = bounding_radius(footage.actors[i].shape);
-      if (std::isfinite(radius)) {
-        const Vector3& p = footage.pictures[k].poses[i].position;
-        low = low.cwiseMin(p - Vector3::Constant(radius));
-        high = high.cwiseMax(p + Vector3::Constant(radius));
+
+  void add(const Vector3& centre, double radius) {
+    low = low.cwiseMin(centre - Vector3::Constant(radius));
+    high = high.cwiseMax(centre + Vector3::Constant(radius));
+  }
+  [[nodiscard]] bool empty() const { return !(low.x() <= high.x()); }
+  [[nodiscard]] double radius() const { return 0.5 * (high - low).norm(); }
+};
+
+}  // namespace
+
+Camera camera_for(std::span<const Shot> shots, double aspect) {
+  Extent seen;
+  for (const bool moving : {true, false}) {
+    // What stands still is seen as a whole unless it dwarfs what moves.
+    constexpr double dwarfs = 3.0;
+    const double most =
+        moving || seen.empty() ? std::numeric_limits<double>::infinity() : dwarfs * seen.radius();
+    for (const auto& [footage, first, last] : shots) {
+      for (std::size_t i = 0; i < footage->actors.size(); ++i) {
+        const Actor& actor = footage->actors[i];
+        const double radius = bounding_radius(actor.shape);
+        if (actor.moves != moving || !std::isfinite(radius) || radius > most) {
+          continue;
+        }
+        for (std::size_t k = first; k <= last; ++k) {
+          seen.add(footage->pictures[k].poses[i].position, radius);
+        }
       }
     }
   }
-  if (!(low.x() <= high.x())) {
-    low = Vector3::Constant(-1.0);  // nothing but planes
-    high = Vector3::Constant(1.0);
+  if (seen.empty()) {
+    seen.add(Vector3::Zero(), 1.0);  // nothing but planes
   }
   Camera camera;
-  camera.target = 0.5 * (low + high);
-  const double radius = 0.5 * (high - low).norm();
-  const double distance = 1.05 * radius / std::sin(0.5 * camera.angle * std::numbers::pi / 180.0);
+  camera.target = 0.5 * (seen.low + seen.high);
+  // The angle is across the picture; the narrower side must hold it all.
+  const double half = std::tan(0.5 * camera.angle * std::numbers::pi / 180.0);
+  const double narrow = std::atan(std::min(half, half / aspect));
+  const double distance = 1.05 * seen.radius() / std::sin(narrow);
   camera.position = camera.target + distance * Vector3(0.3, 0.3, 1.0).normalized();
   return camera;
 }

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string_view>
 #include <system_error>
 
 namespace kairos::experiments {
@@ -36,26 +37,38 @@ class Workshop {
   }
   [[nodiscard]] fs::path file(const std::string& name) const { return path_ / name; }
 
+  /// POV-Ray draws one of its scenes into one of its files, and may write nowhere else.
+  void draw(const std::string& scene, const std::string& png, int width, int height, bool smooth) {
+    const fs::path home = fs::absolute(path_) / "home";
+    if (!configured_) {
+      fs::create_directories(home / ".povray" / "3.7");
+      write_file((home / ".povray" / "3.7" / "povray.conf").string(),
+                 "[File I/O Security]\nrestricted\n[Shellout Security]\nforbidden\n"
+                 "[Permitted Paths]\nread+write = .\n");
+      configured_ = true;
+    }
+    // Names of folders stay out of its commands: it works in the folder itself.
+    const std::vector<std::string> command{"povray",
+                                           "+I" + scene,
+                                           "+O" + png,
+                                           fmt::format("+W{}", width),
+                                           fmt::format("+H{}", height),
+                                           "+FN",
+                                           "-D",
+                                           "-J",
+                                           "-P",
+                                           smooth ? "+A0.3" : "-A"};
+    std::error_code error;
+    if (run_child(command, ChildOutput::hidden, {path_.string(), home.string()}) != 0 ||
+        !fs::is_regular_file(file(png), error)) {
+      throw RunError(fmt::format("{}: povray could not draw it", file(png).string()));
+    }
+  }
+
  private:
   fs::path path_;
+  bool configured_ = false;
 };
-
-void run_povray(const fs::path& scene, const fs::path& png, int width, int height, bool smooth) {
-  std::vector<std::string> command{"povray",
-                                   fmt::format("+I{}", scene.string()),
-                                   fmt::format("+O{}", png.string()),
-                                   fmt::format("+W{}", width),
-                                   fmt::format("+H{}", height),
-                                   "+FN",
-                                   "-D",
-                                   "-J",
-                                   "-P"};
-  command.push_back(smooth ? "+A0.3" : "-A");
-  std::error_code error;
-  if (run_child(command, ChildOutput::hidden) != 0 || !fs::is_regular_file(png, error)) {
-    throw RunError(fmt::format("{}: povray could not draw it", png.string()));
-  }
-}
 
 PictureOptions picture_options(const RenderOptions& options, const Camera& camera,
                                const std::string& label) {
@@ -67,7 +80,7 @@ PictureOptions picture_options(const RenderOptions& options, const Camera& camer
 }
 
 /// A picture of pictures: seen from straight before, with a gap between them.
-std::string side_by_side(const fs::path& left, const fs::path& right, double aspect) {
+std::string side_by_side(const std::string& left, const std::string& right, double aspect) {
   const double gap = 0.02 * aspect;
   std::string text = fmt::format(
       "#version 3.7;\nglobal_settings {{ assumed_gamma 1.0 }}\nbackground {{ color rgb 1 }}\n"
@@ -78,17 +91,43 @@ std::string side_by_side(const fs::path& left, const fs::path& right, double asp
         "polygon {{ 5, <0,0>,<1,0>,<1,1>,<0,1>,<0,0> pigment {{ image_map {{ png \"{}\" once }} }} "
         "finish {{ ambient 0 diffuse 0 emission 1 }} scale <{:.9g},1,1> translate "
         "<{:.9g},-0.5,0> }}\n",
-        file->string(), aspect, x);
+        *file, aspect, x);
   }
   return text;
 }
 
-void draw_one(const Footage& footage, double time, const RenderOptions& options,
-              const Camera& camera, const std::string& label, const fs::path& scene,
-              const fs::path& png) {
-  write_file(scene.string(),
-             pov_scene(footage, footage.at(time), picture_options(options, camera, label)));
-  run_povray(scene, png, options.width, options.height, options.smooth);
+/// Into the file `NAME.png` of the workshop.
+std::string draw_one(const Moment& moment, const RenderOptions& options, const Camera& camera,
+                     const std::string& label, const std::string& name, Workshop& workshop) {
+  write_file(workshop.file(name + ".pov").string(),
+             pov_scene(*moment.footage, moment.footage->at(moment.time),
+                       picture_options(options, camera, label)));
+  workshop.draw(name + ".pov", name + ".png", options.width, options.height, options.smooth);
+  return name + ".png";
+}
+
+double aspect_of(const RenderOptions& options) {
+  return static_cast<double>(options.width) / options.height;
+}
+
+/// Pictures and a film of an earlier run of this, which may have been longer.
+void remove_pictures(const fs::path& folder) {
+  std::error_code none;
+  std::vector<fs::path> old;
+  for (const auto& entry : fs::directory_iterator(folder, none)) {
+    const std::string name = entry.path().filename().string();
+    const std::string_view digits =
+        name.starts_with("frame-") && name.ends_with(".png") && name.size() >= 15
+            ? std::string_view(name).substr(6, name.size() - 10)
+            : std::string_view();
+    if (name == "film.mp4" ||
+        (!digits.empty() && digits.find_first_not_of("0123456789") == std::string_view::npos)) {
+      old.push_back(entry.path());
+    }
+  }
+  for (const fs::path& path : old) {
+    fs::remove(path, none);
+  }
 }
 
 }  // namespace
@@ -140,25 +179,30 @@ std::vector<double> picture_times(const Footage& footage, const RenderOptions& o
 
 void render_picture(const Moment& moment, const Moment& beside, const RenderOptions& options,
                     const fs::path& png) {
-  const Footage& footage = *moment.footage;
-  const Camera camera =
-      options.camera ? *options.camera : camera_for(footage, 0, footage.pictures.size() - 1);
-  const Workshop workshop(png);
-  const fs::path whole = workshop.file("whole.png");
-  if (beside.footage == nullptr) {
-    draw_one(footage, moment.time, options, camera, options.label, workshop.file("a.pov"), whole);
+  const auto whole_run = [](const Footage& footage) {
+    return Shot{&footage, 0, footage.pictures.size() - 1};
+  };
+  Camera camera;
+  if (options.camera) {
+    camera = *options.camera;
   } else {
-    const fs::path left = workshop.file("a.png");
-    const fs::path right = workshop.file("b.png");
-    draw_one(footage, moment.time, options, camera, options.label, workshop.file("a.pov"), left);
-    draw_one(*beside.footage, beside.time, options, camera, options.beside_label,
-             workshop.file("b.pov"), right);
-    const double aspect = static_cast<double>(options.width) / options.height;
-    write_file(workshop.file("both.pov").string(), side_by_side(left, right, aspect));
-    const int gap = static_cast<int>(std::lround(0.02 * options.width));
-    run_povray(workshop.file("both.pov"), whole, 2 * options.width + gap, options.height, false);
+    std::vector<Shot> shots{whole_run(*moment.footage)};
+    if (beside.footage != nullptr) {
+      shots.push_back(whole_run(*beside.footage));
+    }
+    camera = camera_for(shots, aspect_of(options));
   }
-  fs::rename(whole, png);
+  Workshop workshop(png);
+  std::string drawn = draw_one(moment, options, camera, options.label, "a", workshop);
+  if (beside.footage != nullptr) {
+    const std::string right =
+        draw_one(beside, options, camera, options.beside_label, "b", workshop);
+    write_file(workshop.file("both.pov").string(), side_by_side(drawn, right, aspect_of(options)));
+    const int gap = static_cast<int>(std::lround(0.02 * options.width));
+    drawn = "both.png";
+    workshop.draw("both.pov", drawn, 2 * options.width + gap, options.height, false);
+  }
+  fs::rename(workshop.file(drawn), png);
 }
 
 std::size_t render_run(const Footage& footage, const Footage* beside, const RenderOptions& options,
@@ -166,9 +210,17 @@ std::size_t render_run(const Footage& footage, const Footage* beside, const Rend
   RenderOptions fixed = options;
   const std::vector<double> times = picture_times(footage, options);
   if (!fixed.camera) {  // the same for all pictures
-    fixed.camera = camera_for(footage, footage.at(times.front()), footage.at(times.back()));
+    std::vector<Shot> shots;
+    for (const Footage* run : {&footage, beside}) {
+      if (run != nullptr) {
+        shots.push_back({run, run->at(times.front()), run->at(times.back())});
+      }
+    }
+    fixed.camera = camera_for(shots, aspect_of(options));
   }
-  OutputFolder(folder).publish();  // pictures follow, each whole or not at all
+  OutputFolder taken(folder);
+  taken.publish();  // pictures follow, each whole or not at all
+  remove_pictures(folder);
   ProgressBar bar("render", times.size());
   for (std::size_t k = 0; k < times.size(); ++k) {
     render_picture({&footage, times[k]}, {beside, times[k]}, fixed,
@@ -181,11 +233,11 @@ std::size_t render_run(const Footage& footage, const Footage* beside, const Rend
 bool make_film(const fs::path& folder, double frames_per_second) {
   const fs::path film = folder / "film.mp4";
   const fs::path part = folder / "film.part.mp4";
-  const int code =
-      run_child({"ffmpeg", "-y", "-framerate", fmt::format("{}", frames_per_second), "-i",
-                 (folder / "frame-%05d.png").string(), "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2",
-                 "-pix_fmt", "yuv420p", part.string()},
-                ChildOutput::hidden);
+  // In the folder itself: its name may hold what ffmpeg takes for a pattern.
+  const int code = run_child(
+      {"ffmpeg", "-y", "-framerate", fmt::format("{}", frames_per_second), "-i", "frame-%05d.png",
+       "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p", part.filename().string()},
+      ChildOutput::hidden, {folder.string(), {}});
   std::error_code error;
   if (code != 0) {
     fs::remove(part, error);

@@ -4,6 +4,7 @@
 #include "experiments/metrics/metrics.hpp"
 #include "experiments/output/output_folder.hpp"
 #include "experiments/output/table.hpp"
+#include "experiments/output/text_or_nothing.hpp"
 #include "experiments/sweeps/sweep.hpp"
 #include "simulation/version.hpp"
 
@@ -11,8 +12,6 @@
 
 #include <chrono>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <system_error>
 
 namespace kairos::experiments {
@@ -77,20 +76,17 @@ Table manifest_of(const ExperimentSpec& spec, const ExperimentOptions& options) 
   return table;
 }
 
-std::string file_text(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 }  // namespace
+
+OutputSet experiment_output(bool replace) {
+  return {.seal = "manifest.csv", .begins = "key,value\nname,", .replace = replace};
+}
 
 ExperimentOutcome run_sweeps(const ExperimentSpec& spec, const ExperimentOptions& options,
                              const std::string& folder) {
   ExperimentOutcome outcome;
   const auto start = Clock::now();
-  OutputFolder out(folder);
+  OutputFolder out(folder, experiment_output(options.force));
   std::vector<std::string> journals;
   Table columns{{"sweep", "column", "role", "unit", "label", "scale"}, {}};
   Table timings{{"sweep", "run", "method", "seconds"}, {}};
@@ -112,7 +108,7 @@ ExperimentOutcome run_sweeps(const ExperimentSpec& spec, const ExperimentOptions
   }
   out.file("columns.csv").write(columns.csv());
   out.file("manifest.csv").write(manifest_of(spec, options).csv());
-  out.file("spec.toml").write(file_text(spec.path));
+  out.file("spec.toml").write(text_or_nothing(spec.path));
   out.file("timings.csv").write(timings.csv());
   out.publish();
   for (const std::string& journal : journals) {
@@ -129,7 +125,7 @@ ExperimentOutcome run_sweeps(const ExperimentSpec& spec, const ExperimentOptions
 
 ExperimentOutcome publish_program(const ExperimentSpec& spec, const ExperimentOptions& options,
                                   const ProgramOutput& made, const std::string& folder) {
-  OutputFolder out(folder);
+  OutputFolder out(folder, experiment_output(options.force));
   Table manifest = manifest_of(spec, options);
   for (const std::string& name : made.shown) {
     manifest.rows.push_back({std::string("table"), name});
@@ -140,7 +136,7 @@ ExperimentOutcome publish_program(const ExperimentSpec& spec, const ExperimentOp
   out.file("columns.csv")
       .write(Table{{"sweep", "column", "role", "unit", "label", "scale"}, {}}.csv());
   out.file("manifest.csv").write(manifest.csv());
-  out.file("spec.toml").write(file_text(spec.path));
+  out.file("spec.toml").write(text_or_nothing(spec.path));
   if (!made.timings.columns.empty()) {
     out.file("timings.csv").write(made.timings.csv());
   }

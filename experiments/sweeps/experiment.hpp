@@ -1,5 +1,6 @@
 #pragma once
 
+#include "experiments/output/output_folder.hpp"
 #include "experiments/sweeps/experiment_program.hpp"
 #include "experiments/sweeps/sweep_spec.hpp"
 
@@ -12,6 +13,7 @@ struct ExperimentOptions {
   Size size = Size::quick;
   std::size_t threads = 0;  ///< 0: one per core
   std::string command;      ///< that repeats it, for the report
+  bool force = false;       ///< replaces whatever the folder holds
 };
 
 /// What an experiment made.
@@ -22,6 +24,9 @@ struct ExperimentOutcome {
   double figure_seconds = 0.0;
   std::string figure_problem;  ///< empty if the figures are drawn
 };
+
+/// What the folder of an experiment or a figure looks like: `manifest.csv` seals it.
+[[nodiscard]] OutputSet experiment_output(bool replace);
 
 /// Runs the sweeps of a spec, writes their tables to `folder`, then draws the figures.
 ///

@@ -8,6 +8,27 @@
 
 namespace kairos::experiments {
 
+namespace {
+
+/// As a TOML string of one line: it is put into a scene again.
+std::string quoted(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code == 0x7f) {
+      out += fmt::format("\\u{:04x}", code);
+      continue;
+    }
+    if (c == '"' || c == '\\') {
+      out += '\\';
+    }
+    out += c;
+  }
+  return out + '"';
+}
+
+}  // namespace
+
 std::string_view to_string(Size size) { return size == Size::quick ? "quick" : "full"; }
 
 std::optional<Item> SpecSection::find(std::string_view key) const {
@@ -61,6 +82,9 @@ std::vector<SpecSection> SpecSection::tables(std::string_view key) const {
   }
   if (item->value().table() != nullptr) {
     return {SpecSection(TableReader(*item), size_)};
+  }
+  if (item->array().empty()) {
+    item->fail("is an empty array; allowed: a table, or an array of tables");
   }
   for (const Value& value : item->array()) {
     const std::string path = fmt::format("{}[{}]", item->path(), tables.size() + 1);
@@ -121,14 +145,7 @@ std::string toml_literal(const Item& item) {
     return *flag ? "true" : "false";
   }
   if (const auto* text = std::get_if<std::string>(&data)) {
-    std::string quoted = "\"";
-    for (const char c : *text) {
-      if (c == '"' || c == '\\') {
-        quoted += '\\';
-      }
-      quoted += c;
-    }
-    return quoted + '"';
+    return quoted(*text);
   }
   if (std::holds_alternative<double>(data) || std::holds_alternative<std::int64_t>(data)) {
     return fmt::format("{}", number_of(item, {}));

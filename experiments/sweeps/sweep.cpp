@@ -60,12 +60,11 @@ RunRecord run_one(const SweepSpec& spec, const std::string& scene, const Planned
 
 /// A spec none of whose runs can even be read is wrong; one of whose runs cannot, has a row that
 /// says so.
-void check_readable(const SweepSpec& spec, const std::string& scene,
-                    const std::vector<PlannedRun>& plan) {
+void check_readable(const SweepSpec& spec, const std::string& scene, const SweepPlan& plan) {
   std::optional<InputError> first;
-  for (const PlannedRun& run : plan) {
+  for (std::size_t i = 0; i < plan.size(); ++i) {
     try {
-      (void)subject_of(Model(read_scene(scene, run.overrides)), spec.subject);
+      (void)subject_of(Model(read_scene(scene, plan[i].overrides)), spec.subject);
       return;
     } catch (const InputError& error) {
       first = first ? first : std::optional(error);
@@ -80,7 +79,8 @@ void check_readable(const SweepSpec& spec, const std::string& scene,
 
 SweepResult run_sweep(const SweepSpec& spec, std::size_t threads, const std::string& journal) {
   using Clock = std::chrono::steady_clock;
-  const std::vector<PlannedRun> plan = plan_sweep(spec);
+  const SweepPlan plan(spec);
+  plan.check();
   const std::string scene = scene_path(spec);
   check_readable(spec, scene, plan);
 
@@ -90,6 +90,9 @@ SweepResult run_sweep(const SweepSpec& spec, std::size_t threads, const std::str
   if (!journal.empty()) {
     kept.emplace(journal, sweep_key(spec, plan, scene));
     for (auto& [index, record] : kept->found()) {
+      if (index >= records.size()) {
+        continue;  // not written by us
+      }
       records[index] = std::move(record);
       finished[index] = 1;
     }

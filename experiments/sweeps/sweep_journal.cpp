@@ -3,12 +3,11 @@
 #include "core/archive.hpp"
 #include "core/reading/scene_reader.hpp"
 #include "experiments/checkpoint/run_identity.hpp"
+#include "experiments/output/fingerprint.hpp"
+#include "experiments/output/text_or_nothing.hpp"
 #include "simulation/option.hpp"
 
 #include <fmt/format.h>
-
-#include <fstream>
-#include <sstream>
 
 namespace kairos::experiments {
 
@@ -24,13 +23,6 @@ namespace {
 void persist_row(Archive& archive, std::size_t& index, RunRecord& record) {
   archive(index, record.status, record.reason, record.metrics, record.samples, record.apexes,
           record.seconds);
-}
-
-std::string text_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return std::move(text).str();
 }
 
 }  // namespace
@@ -52,22 +44,24 @@ void SweepJournal::add(std::size_t index, RunRecord& record) {
   journal_.add(archive.bytes());
 }
 
-std::string sweep_key(const SweepSpec& spec, const std::vector<PlannedRun>& plan,
-                      const std::string& scene) {
+std::string sweep_key(const SweepSpec& spec, const SweepPlan& plan, const std::string& scene) {
   std::string key = fmt::format("{} {} {} {} {} {}\n", spec.name, spec.subject, spec.series,
                                 spec.samples, fmt::join(spec.metrics, " "), plan.size());
   key += program_identity() + "\n";
-  key += text_of(scene);
-  for (const PlannedRun& run : plan) {
-    key += fmt::format("{} {} {}\n", run.index, run.method, run.refused);
+  key += text_or_nothing(scene);
+  Fingerprint sum;  // of a plan that may be longer than there is memory
+  sum.add(key);
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    const PlannedRun run = plan[i];
+    sum.add(fmt::format("{} {} {}\n", run.index, run.method, run.refused));
     for (const Override& o : run.overrides) {
-      key += fmt::format("{}={}\n", o.key, o.value);
+      sum.add(fmt::format("{}={}\n", o.key, o.value));
     }
     for (const auto& [name, value] : identity_of(run.choice)) {
-      key += fmt::format("{}={}\n", name, value);
+      sum.add(fmt::format("{}={}\n", name, value));
     }
   }
-  return "kairos sweep 2 " + fingerprint(key);
+  return "kairos sweep 2 " + sum.text();
 }
 
 }  // namespace kairos::experiments

@@ -27,7 +27,7 @@ class SweepJournal {
 };
 
 /// What the rows of a sweep depend on: its plan, the scene's text, and the program itself.
-[[nodiscard]] std::string sweep_key(const SweepSpec& spec, const std::vector<PlannedRun>& plan,
+[[nodiscard]] std::string sweep_key(const SweepSpec& spec, const SweepPlan& plan,
                                     const std::string& scene);
 
 }  // namespace kairos::experiments

@@ -228,28 +228,35 @@ std::string scene_path(const SweepSpec& spec) {
   }
 }
 
-std::vector<PlannedRun> plan_sweep(const SweepSpec& spec) {
-  const std::size_t points = point_count(spec);
-  std::vector<PlannedRun> runs;
-  runs.reserve(points * spec.methods.size() * static_cast<std::size_t>(spec.repeats));
-  for (std::size_t m = 0; m < spec.methods.size(); ++m) {
-    for (std::size_t point = 0; point < points; ++point) {
-      for (std::int64_t repeat = 0; repeat < spec.repeats; ++repeat) {
-        PlannedRun run;
-        run.index = runs.size();
-        run.method = m;
-        run.point = point;
-        run.repeat = repeat;
-        run.axis_values = values_at(spec, point, repeat);
-        fill(spec, run);
-        if (repeat == 0) {
-          check_method(spec, spec.methods[m], run.choice);
-        }
-        runs.push_back(std::move(run));
-      }
+SweepPlan::SweepPlan(const SweepSpec& spec)
+    : spec_(spec),
+      points_(point_count(spec)),
+      size_(points_ * spec.methods.size() * static_cast<std::size_t>(spec.repeats)) {}
+
+RunPlace SweepPlan::place(std::size_t index) const {
+  const auto repeats = static_cast<std::size_t>(spec_.repeats);
+  RunPlace place;
+  place.index = index;
+  place.repeat = static_cast<std::int64_t>(index % repeats);
+  place.point = index / repeats % points_;
+  place.method = index / repeats / points_;
+  place.axis_values = values_at(spec_, place.point, place.repeat);
+  return place;
+}
+
+PlannedRun SweepPlan::operator[](std::size_t index) const {
+  PlannedRun run{place(index), {}, {}, {}, {}};
+  fill(spec_, run);
+  return run;
+}
+
+void SweepPlan::check() const {
+  for (std::size_t i = 0; i < size_; ++i) {
+    const PlannedRun run = (*this)[i];
+    if (run.repeat == 0) {
+      check_method(spec_, spec_.methods[run.method], run.choice);
     }
   }
-  return runs;
 }
 
 }  // namespace kairos::experiments

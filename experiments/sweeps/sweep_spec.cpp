@@ -1,8 +1,11 @@
 #include "experiments/sweeps/sweep_spec.hpp"
 
 #include "core/error.hpp"
+#include "core/reading/scene_name.hpp"
 #include "experiments/metrics/metrics.hpp"
+#include "experiments/output/plain_file_name.hpp"
 #include "experiments/sweeps/axis_reader.hpp"
+#include "experiments/sweeps/experiment_program.hpp"
 #include "experiments/sweeps/spec_section.hpp"
 #include "simulation/option.hpp"
 
@@ -10,6 +13,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
 
 namespace kairos::experiments {
@@ -61,7 +65,9 @@ MethodSpec read_method(const SpecSection& section) {
     if (key == "name") {
       method.name = section.text("name");
     } else if (key == "set") {
-      read_settings(section.tables("set").front(), method.set);
+      for (const SpecSection& set : section.tables("set")) {
+        read_settings(set, method.set);
+      }
     } else if (find_option(key) != nullptr) {
       put(read_setting(key, item), method.options);
     } else {
@@ -198,6 +204,14 @@ void check_sweep(const SpecSection& section, SweepSpec& sweep) {
   check_names(section, sweep);
 }
 
+/// Names that differ in case alone are those of one file on some disks.
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 'a' - 'A') : c;
+  });
+  return text;
+}
+
 ExperimentSpec read_root(const SpecSection& section, const std::string& path) {
   Keys keys = sweep_keys();
   keys.insert(keys.end(),
@@ -205,12 +219,17 @@ ExperimentSpec read_root(const SpecSection& section, const std::string& path) {
   section.allow(keys);
   ExperimentSpec experiment;
   experiment.path = path;
-  experiment.name = section.text("name", std::filesystem::path(path).stem().string());
+  // Names become those of files and folders.
+  const auto name = section.find("name");
+  experiment.name =
+      name ? read_name(*name) : plain_file_name(std::filesystem::path(path).stem().string());
   experiment.title = section.text("title", experiment.name);
   experiment.asks = section.text("asks");
   experiment.how = section.text("how");
   experiment.finding = section.text("finding");
-  experiment.figure = section.text("figure");
+  if (const auto figure = section.find("figure"); figure && !figure->text().empty()) {
+    experiment.figure = read_name(*figure);  // of a script, which is run
+  }
   experiment.program = section.text("program");
   if (section.find("scenes")) {
     experiment.scenes = section.texts("scenes");
@@ -224,12 +243,20 @@ ExperimentSpec read_root(const SpecSection& section, const std::string& path) {
   shared.name = experiment.name;
   shared = read_sweep(section, shared);
   const auto sweeps = section.tables("sweep");
+  std::map<std::string, int> lines;
   for (const SpecSection& own : sweeps) {
     Keys own_keys = sweep_keys();
     own_keys.push_back("name");
     own.allow(own_keys);
     SweepSpec sweep = read_sweep(own, shared);
-    sweep.name = own.text("name", fmt::format("sweep{}", experiment.sweeps.size() + 1));
+    const auto given = own.find("name");
+    sweep.name = given ? read_name(*given) : fmt::format("sweep{}", experiment.sweeps.size() + 1);
+    const auto [first, is_new] = lines.emplace(lower_case(sweep.name), own.line());
+    if (!is_new) {
+      own.fail("name", fmt::format("\"{}\" is the name of the sweep of line {} already; allowed: a "
+                                   "name of its own, for it names its tables",
+                                   sweep.name, first->second));
+    }
     check_sweep(own, sweep);
     experiment.sweeps.push_back(std::move(sweep));
   }

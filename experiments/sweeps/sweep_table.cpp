@@ -29,7 +29,7 @@ void add_point_columns(const SweepSpec& spec, bool drawn_too, Table& table) {
   }
 }
 
-std::vector<Cell> point_cells(const SweepSpec& spec, const PlannedRun& run, bool drawn_too) {
+std::vector<Cell> point_cells(const SweepSpec& spec, const RunPlace& run, bool drawn_too) {
   std::vector<Cell> cells{spec.methods[run.method].name};
   for (std::size_t i = 0; i < spec.axes.size(); ++i) {
     if (drawn_too || !is_drawn(spec.axes[i])) {
@@ -65,8 +65,7 @@ std::optional<double> derived_of(const SweepSpec& spec, const Derived& derived,
 /// Differences to the reference method at the same point and repeat.
 class Reference {
  public:
-  Reference(const SweepSpec& spec, const std::vector<PlannedRun>& plan,
-            const std::vector<RunRecord>& records)
+  Reference(const SweepSpec& spec, const SweepPlan& plan, const std::vector<RunRecord>& records)
       : records_(records), per_method_(plan.size() / spec.methods.size()) {
     for (std::size_t m = 0; m < spec.methods.size(); ++m) {
       first_ = spec.methods[m].name == spec.reference ? m * per_method_ : first_;
@@ -92,7 +91,7 @@ struct Numbers {
   std::vector<std::vector<std::optional<double>>> runs;
 };
 
-Numbers numbers_of(const SweepSpec& spec, const std::vector<PlannedRun>& plan,
+Numbers numbers_of(const SweepSpec& spec, const SweepPlan& plan,
                    const std::vector<RunRecord>& records) {
   Numbers out;
   out.names = spec.metrics;
@@ -121,7 +120,7 @@ Numbers numbers_of(const SweepSpec& spec, const std::vector<PlannedRun>& plan,
   return out;
 }
 
-Table runs_table(const SweepSpec& spec, const std::vector<PlannedRun>& plan,
+Table runs_table(const SweepSpec& spec, const SweepPlan& plan,
                  const std::vector<RunRecord>& records, const Numbers& numbers) {
   Table table;
   table.columns.emplace_back("run");
@@ -129,10 +128,11 @@ Table runs_table(const SweepSpec& spec, const std::vector<PlannedRun>& plan,
   table.columns.insert(table.columns.end(), {"repeat", "status", "reason"});
   table.columns.insert(table.columns.end(), numbers.names.begin(), numbers.names.end());
   for (std::size_t r = 0; r < plan.size(); ++r) {
-    std::vector<Cell> row{static_cast<std::int64_t>(plan[r].index)};
-    const auto point = point_cells(spec, plan[r], true);
+    const RunPlace place = plan.place(r);
+    std::vector<Cell> row{static_cast<std::int64_t>(r)};
+    const auto point = point_cells(spec, place, true);
     row.insert(row.end(), point.begin(), point.end());
-    row.insert(row.end(), {plan[r].repeat, records[r].status, records[r].reason});
+    row.insert(row.end(), {place.repeat, records[r].status, records[r].reason});
     for (const auto& x : numbers.runs[r]) {
       row.push_back(optional_cell(x));
     }
@@ -163,7 +163,7 @@ void append_distribution(const Numbers& numbers, std::size_t column, std::size_t
   }
 }
 
-Table summary_table(const SweepSpec& spec, const std::vector<PlannedRun>& plan,
+Table summary_table(const SweepSpec& spec, const SweepPlan& plan,
                     const std::vector<RunRecord>& records, const Numbers& numbers) {
   Table table;
   add_point_columns(spec, false, table);
@@ -175,7 +175,7 @@ Table summary_table(const SweepSpec& spec, const std::vector<PlannedRun>& plan,
   }
   const auto repeats = static_cast<std::size_t>(spec.repeats);
   for (std::size_t first = 0; first < plan.size(); first += repeats) {
-    std::vector<Cell> row = point_cells(spec, plan[first], false);
+    std::vector<Cell> row = point_cells(spec, plan.place(first), false);
     std::int64_t completed = 0;
     for (std::size_t r = first; r < first + repeats; ++r) {
       completed += records[r].status == "completed" ? 1 : 0;
@@ -189,7 +189,7 @@ Table summary_table(const SweepSpec& spec, const std::vector<PlannedRun>& plan,
   return table;
 }
 
-Table series_table(const SweepSpec& spec, const std::vector<PlannedRun>& plan,
+Table series_table(const SweepSpec& spec, const SweepPlan& plan,
                    const std::vector<RunRecord>& records) {
   Table table;
   table.columns.emplace_back("run");
@@ -200,9 +200,10 @@ Table series_table(const SweepSpec& spec, const std::vector<PlannedRun>& plan,
   }
   table.columns.emplace_back("unexplained");
   for (std::size_t r = 0; r < plan.size(); ++r) {
+    const RunPlace place = plan.place(r);
     for (const auto& sample : records[r].samples) {
       std::vector<Cell> row{static_cast<std::int64_t>(r)};
-      const auto point = point_cells(spec, plan[r], true);
+      const auto point = point_cells(spec, place, true);
       row.insert(row.end(), point.begin(), point.end());
       row.insert(row.end(), {sample.time, sample.frame, number_cell(sample.kinetic),
                              number_cell(sample.potential), number_cell(sample.gain)});
@@ -216,17 +217,18 @@ Table series_table(const SweepSpec& spec, const std::vector<PlannedRun>& plan,
   return table;
 }
 
-Table apex_table(const SweepSpec& spec, const std::vector<PlannedRun>& plan,
+Table apex_table(const SweepSpec& spec, const SweepPlan& plan,
                  const std::vector<RunRecord>& records) {
   Table table;
   table.columns.emplace_back("run");
   add_point_columns(spec, true, table);
   table.columns.insert(table.columns.end(), {"apex", "t", "height"});
   for (std::size_t r = 0; r < plan.size(); ++r) {
+    const RunPlace place = plan.place(r);
     std::int64_t n = 0;
     for (const auto& apex : records[r].apexes) {
       std::vector<Cell> row{static_cast<std::int64_t>(r)};
-      const auto point = point_cells(spec, plan[r], true);
+      const auto point = point_cells(spec, place, true);
       row.insert(row.end(), point.begin(), point.end());
       row.insert(row.end(), {++n, number_cell(apex.time), number_cell(apex.height)});
       table.rows.push_back(std::move(row));
@@ -244,7 +246,7 @@ double quantile(const std::vector<double>& sorted, double p) {
   return sorted[below] + (sorted[above] - sorted[below]) * (at - static_cast<double>(below));
 }
 
-SweepResult sweep_tables(const SweepSpec& spec, const std::vector<PlannedRun>& plan,
+SweepResult sweep_tables(const SweepSpec& spec, const SweepPlan& plan,
                          const std::vector<RunRecord>& records) {
   SweepResult result;
   const Numbers numbers = numbers_of(spec, plan, records);
@@ -257,7 +259,8 @@ SweepResult sweep_tables(const SweepSpec& spec, const std::vector<PlannedRun>& p
   result.timings.columns = {"run", "method", "seconds"};
   for (std::size_t r = 0; r < plan.size(); ++r) {
     result.failed += records[r].status == "completed" ? 0U : 1U;
-    result.timings.rows.push_back({static_cast<std::int64_t>(r), spec.methods[plan[r].method].name,
+    result.timings.rows.push_back({static_cast<std::int64_t>(r),
+                                   spec.methods[plan.place(r).method].name,
                                    number_cell(records[r].seconds)});
   }
   return result;

@@ -21,7 +21,7 @@ struct RunRecord {
 };
 
 /// Puts the records of all runs, in the order of the plan, into tables.
-[[nodiscard]] SweepResult sweep_tables(const SweepSpec& spec, const std::vector<PlannedRun>& plan,
+[[nodiscard]] SweepResult sweep_tables(const SweepSpec& spec, const SweepPlan& plan,
                                        const std::vector<RunRecord>& records);
 
 }  // namespace kairos::experiments

@@ -1,5 +1,6 @@
 #include "experiments/figures/draw_figures.hpp"
 #include "experiments/output/output_folder.hpp"
+#include "experiments/sweeps/experiment.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
 #include "simulation/version.hpp"
 
@@ -44,7 +45,7 @@ FigureOutcome make_figure(const ThesisFigure& figure, Size size, const std::stri
   auto start = Clock::now();
   FigureData data(folder, size);
   figure.measure(data);
-  OutputFolder out(folder);
+  OutputFolder out(folder, experiment_output(true));
   data.write(out);
   out.file("manifest.csv").write(manifest_of(figure, data).csv());
   out.publish();

@@ -114,13 +114,9 @@ class Stream {
   std::int64_t run() {
     emit(format_.answer_header);
     const std::size_t count = options_.threads == 0 ? default_threads() : options_.threads;
-    std::vector<std::thread> workers;
-    for (std::size_t i = 1; i < count; ++i) {
-      workers.emplace_back([this] { work(); });
-    }
-    work();
-    for (std::thread& worker : workers) {
-      worker.join();
+    {
+      const std::vector<std::jthread> others = start_threads(count - 1, [this] { work(); });
+      work();
     }
     if (error_) {
       std::rethrow_exception(error_);

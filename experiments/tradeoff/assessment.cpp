@@ -1,6 +1,9 @@
 #include "experiments/tradeoff/assessment.hpp"
 
+#include "experiments/output/plain_file_name.hpp"
 #include "experiments/parallel_for.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +22,7 @@ RunChoice up_to(const RunChoice& choice, double until) {
 
 Assessment assess(const Model& model, double duration, std::size_t threads) {
   Assessment assessment;
-  assessment.scene = model.scene().name;
+  assessment.scene = plain_file_name(model.scene().name);  // it names a table
   assessment.reference = find_reference(model, duration);
   for (Candidate& candidate : sensible_candidates(model)) {
     assessment.methods.push_back({std::move(candidate), {}, {}});
@@ -28,6 +31,11 @@ Assessment assess(const Model& model, double duration, std::size_t threads) {
     Assessed& method = assessment.methods[i];
     method.run = measure(model, up_to(method.candidate.choice, assessment.reference.until));
     method.errors = errors_of(method.run, assessment.reference);
+    if (method.run.completed() && !(method.errors.position <= assessment.reference.scale)) {
+      method.run.status = "diverged";
+      method.run.reason = fmt::format("ends {:.1e} m off where nothing gets farther than {:.1e} m",
+                                      method.errors.position, assessment.reference.scale);
+    }
   });
   return assessment;
 }

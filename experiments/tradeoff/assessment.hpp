@@ -28,7 +28,8 @@ struct Assessment {
 [[nodiscard]] Assessment assess(const Model& model, double duration, std::size_t threads);
 
 /// Which methods are on the Pareto front of counted work and the given error: none is both cheaper
-/// and better. Only runs that completed, with an error that is finite, can be.
+/// and better. Only runs that completed, with an error that is finite, can be; one that ends
+/// farther off than anything moves has `diverged`, and is an answer to nothing.
 [[nodiscard]] std::vector<bool> pareto_front(const Assessment& assessment, double Errors::*error);
 
 /// One row per candidate: errors, counted work, fronts.

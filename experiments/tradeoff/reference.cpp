@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace kairos::experiments {
 namespace {
@@ -109,6 +110,41 @@ void make_exact(const ExactMotion& exact, const Model& model, Reference& referen
   reference.time_uncertainty = 0.0;
 }
 
+/// What two bodies are: a method may be right for one kind of meeting and wrong for another.
+std::string kind_of(const Model& model, const BodyPair& pair) {
+  std::string a(model.entity(pair.first).kind());
+  std::string b(model.entity(pair.second).kind());
+  return std::min(a, b) + " and " + std::max(a, b);
+}
+
+std::vector<std::string> unseen_kinds(const Model& model, const MeasuredRun& whole,
+                                      const MeasuredRun& part) {
+  std::set<std::string> seen, unseen;
+  for (const auto& [pair, times] : part.impacts) {
+    seen.insert(kind_of(model, pair));
+  }
+  for (const auto& [pair, times] : whole.impacts) {
+    if (const std::string kind = kind_of(model, pair); seen.count(kind) == 0) {
+      unseen.insert(kind);
+    }
+  }
+  return {unseen.begin(), unseen.end()};
+}
+
+/// How far free bodies get from where they began, and the size of the largest, m.
+double scale_of(const Model& model, double duration) {
+  const Places places = places_of(model, duration);
+  const std::size_t n = model.size();
+  double scale = 0.0;
+  for (std::size_t k = 0; k < places.positions.size(); ++k) {
+    if (model.is_free(k % n)) {
+      scale = std::max(scale, (places.positions[k] - places.positions[k % n]).norm() +
+                                  bounding_radius(model.shape(k % n)));
+    }
+  }
+  return scale;
+}
+
 /// Impacts up to where they accumulate.
 void cut_accumulations(Reference& reference) {
   for (auto& [pair, times] : reference.impacts) {
@@ -159,6 +195,9 @@ Reference find_reference(const Model& model, double duration) {
 
   const MeasuredRun tight = measure(model, tightest(reference.until, 1e-13));
   const MeasuredRun looser = measure(model, tightest(reference.until, 1e-11));
+  reference.whole = duration;
+  reference.unseen = unseen_kinds(model, first, tight);
+  reference.scale = scale_of(model, reference.until);
   reference.kind = "event-driven, tightest";
   reference.impacts = tight.impacts;
   reference.positions.resize(model.size());

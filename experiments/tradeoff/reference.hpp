@@ -19,6 +19,13 @@ struct Reference {
   double position_uncertainty = 0.0;                ///< m: two tolerances differ by this
   double time_uncertainty = 0.0;                    ///< s
   std::int64_t whole_impacts = 0;  ///< over the scene's whole duration: a statistic
+  double whole = 0.0;              ///< s, that duration
+  /// What kinds of bodies meet in the whole run and not up to `until`, as "ball and wall"; empty:
+  /// what is compared shows all that happens.
+  std::vector<std::string> unseen;
+  /// m: how far the farthest free body is from where it began, up to `until`, and its size. What is
+  /// farther off is no answer at all.
+  double scale = 0.0;
 };
 
 /// Finds the reference of a model over `duration`. Throws `RunError` where there is none: the

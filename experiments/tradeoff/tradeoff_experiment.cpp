@@ -40,12 +40,14 @@ constexpr std::array<Requirements, 6> asked{{{.error = 1e-3},
                                              {.error = 1e-6, .penetration = {}, .budget = 1e-6}}};
 
 /// What `kairos recommend` answers: rows of one scene. `frame`: s.
-void add_recommended(Table& table, const Assessment& assessment, double frame) {
+void add_recommended(Table& table, const Model& model, const Assessment& assessment) {
+  const double frame = mean_frame_duration(model.scene().frames);
   table.columns = {"scene",  "error",          "penetration", "budget", "does",
                    "method", "work_per_frame", "ends_off",    "depth"};
   const double frames = std::max(1.0, assessment.reference.until / frame);
   for (const Requirements& wanted : asked) {
-    const Recommendation found = recommend(assessment, wanted, frame);
+    const Recommendation found =
+        recommend(assessment, wanted, frame, whole_run_of(model, assessment.reference, wanted));
     const auto does = std::count(found.shortcomings.begin(), found.shortcomings.end(), "");
     std::vector<Cell> row{assessment.scene, wanted.error,
                           wanted.penetration ? Cell(*wanted.penetration) : Cell(),
@@ -56,7 +58,8 @@ void add_recommended(Table& table, const Assessment& assessment, double frame) {
       row.insert(row.end(), {candidate.name, number_cell(static_cast<double>(run.work()) / frames),
                              number_cell(errors.position), number_cell(errors.penetration)});
     } else {
-      row.insert(row.end(), {std::string("none"), Cell(), Cell(), Cell()});
+      row.insert(row.end(), {std::string(found.refused.empty() ? "none" : "not representative"),
+                             Cell(), Cell(), Cell()});
     }
     table.rows.push_back(std::move(row));
   }
@@ -89,7 +92,7 @@ ProgramOutput run_tradeoff(const ExperimentSpec& spec, Size size, std::size_t th
     const Table times = timing_table(model, assessments.back(), size == Size::quick ? 3 : 9);
     timings.columns = times.columns;
     timings.rows.insert(timings.rows.end(), times.rows.begin(), times.rows.end());
-    add_recommended(recommended, assessments.back(), mean_frame_duration(model.scene().frames));
+    add_recommended(recommended, model, assessments.back());
   }
   ProgramOutput output = tradeoff_output(assessments, std::move(timings));
   output.tables.emplace_back("recommended", std::move(recommended));

@@ -19,6 +19,12 @@ using namespace kairos::experiments;
 using tests::kairos_program;
 using tests::TemporaryFolder;
 
+// What only this test archives.
+namespace kairos::inline core {
+constexpr EventKind last_of(EventKind) { return EventKind::released; }
+constexpr RunStatus last_of(RunStatus) { return RunStatus::stopped; }
+}  // namespace kairos::inline core
+
 namespace {
 
 /// All that a run tells, bit for bit.

@@ -6,6 +6,7 @@
 #include "tests/simulation/scenes.hpp"
 
 #include <fmt/format.h>
+#include <stdlib.h>  // setenv: POSIX
 
 #include <string>
 #include <vector>
@@ -176,9 +177,11 @@ TEST_CASE("wrong command lines exit with 2 and say what is wrong", "[cli]") {
       {{"run", scene, "--threshold", "wide"}, "--threshold"},
       {{"run", scene, "--tolerance", "-1e-9"}, "tolerance"},
       {{"run", scene, "--tolerance", "nan"}, "--tolerance"},
-      {{"run", scene, "--max-substeps", "0"}, "--max-substeps: is 0; allowed: a whole number from 1 to"},
+      {{"run", scene, "--max-substeps", "0"},
+       "--max-substeps: is 0; allowed: a whole number from 1 to"},
       {{"run", scene, "--max-substeps", "1.5"}, "--max-substeps"},
-      {{"run", scene, "--relative-tolerance", "-1"}, "--relative-tolerance: is -1; allowed: a number > 0 and <= 1"},
+      {{"run", scene, "--relative-tolerance", "-1"},
+       "--relative-tolerance: is -1; allowed: a number > 0 and <= 1"},
       {{"run", scene, "--absolute-tolerance", "x"}, "--absolute-tolerance"},
       {{"run", scene, "--set", "radius"}, "--set"},
       {{"run", scene, "--set", "=1"}, "--set"},
@@ -204,6 +207,86 @@ TEST_CASE("wrong command lines exit with 2 and say what is wrong", "[cli]") {
     CHECK(outcome.out.empty());
     CHECK(contains(outcome.err, wrong.says));
   }
+}
+
+TEST_CASE("what is not expected is named in the order in which it was written", "[cli]") {
+  const Outcome outcome =
+      kairos_program({"run", "bounce", "--zeta", "1", "--schem", "original", "--alpha"});
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit_code == 2);
+  CHECK(outcome.err.starts_with("--zeta: "));
+  CHECK(outcome.err.find("--schem") < outcome.err.find("--alpha"));
+  const Outcome typed = kairos_program({"run", "bounce", "--schem", "original"});
+  CHECK(contains(typed.err, "did you mean \"--scheme\""));
+  CHECK(kairos_program({"run", "bounce", "--help"}).exit_code == 0);
+}
+
+TEST_CASE("messages lead to what was meant", "[cli]") {
+  const TemporaryFolder folder;
+  const std::string scene = folder.file("drop.toml", "gravity = -9.81\n" + std::string(drop_scene));
+  struct Case {
+    std::vector<std::string> arguments;
+    std::vector<std::string> says;
+  };
+  const std::vector<Case> cases{
+      {{"run", scene}, {"drop.toml:1: gravity", "acceleration, force", "G = 9.81"}},
+      {{"sweep", "bounce"}, {"is a scene", "kairos run bounce", "file of a spec"}},
+      {{"sweep", "penetration"}, {"is an experiment", "kairos experiment penetration"}},
+      {{"experiment", "foo"}, {"fig13", "penetration", "table-tennis"}},
+      {{"experiment", "penetratoin"}, {"did you mean \"penetration\""}}};
+  for (const Case& wrong : cases) {
+    const Outcome outcome = kairos_program(wrong.arguments);
+    CAPTURE(wrong.arguments, outcome.err);
+    CHECK(outcome.exit_code == 2);
+    for (const std::string& part : wrong.says) {
+      CAPTURE(part);
+      CHECK(contains(outcome.err, part));
+    }
+  }
+}
+
+TEST_CASE("what is allowed and hardly meant draws a warning", "[cli]") {
+  const Outcome seconds = kairos_program({"run", "bounce", "--duration", "2", "--frame", "16"});
+  CHECK(seconds.exit_code == 0);
+  CHECK(contains(seconds.err, "warning: a frame is 16 s"));
+  CHECK(contains(seconds.err, "16ms"));
+  CHECK(kairos_program({"run", "bounce", "--duration", "2", "--frame", "16ms"}).err.empty());
+  const Outcome second = kairos_program({"recommend", "bullet", "--error", "1", "--budget", "1"});
+  CHECK(contains(second.err, "warning: --budget is 1 s"));
+  CHECK(kairos_program({"recommend", "bullet", "--error", "1", "--budget", "1ms"}).err.empty());
+}
+
+TEST_CASE("list fits the terminal, and is as wide as it is in a pipe", "[cli]") {
+  const Outcome pipe = kairos_program({"list"});
+  ::setenv("COLUMNS", "80", 1);
+  const Outcome narrow = kairos_program({"list"});
+  const Outcome csv = kairos_program({"list", "--csv"});
+  ::unsetenv("COLUMNS");
+  std::size_t begin = 0;
+  for (std::size_t end = narrow.out.find('\n'); end != std::string::npos;
+       begin = end + 1, end = narrow.out.find('\n', begin)) {
+    const std::string line = narrow.out.substr(begin, end - begin);
+    CAPTURE(line);
+    CHECK(line.size() <= 80);
+  }
+  const auto words = [](std::string text) {
+    std::string out;
+    for (const char c : text) {
+      out += c == ' ' || c == '\n' ? "" : std::string(1, c);
+    }
+    return out;
+  };
+  CHECK(words(narrow.out) == words(pipe.out));  // nothing is lost
+  CHECK(csv.out == kairos_program({"list", "--csv"}).out);
+}
+
+TEST_CASE("explain tells what of the speed an impact keeps", "[cli]") {
+  CHECK(contains(kairos_program({"explain", "bounce"}).out, "impacts lose nothing"));
+  const Outcome half = kairos_program({"explain", "bounce", "--set", "body.ball.restitution=0.5",
+                                       "--set", "body.floor.restitution=0.8"});
+  CAPTURE(half.out);
+  CHECK(contains(half.out, "0.5 x 0.8 = 0.4, as for ball and floor"));
+  CHECK(contains(half.out, "product"));
 }
 
 TEST_CASE("a message names file, line and key", "[cli]") {

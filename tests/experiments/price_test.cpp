@@ -3,6 +3,8 @@
 #include "core/exact_solution.hpp"
 #include "core/reading/scene_reader.hpp"
 #include "experiments/ablation/ablation_experiment.hpp"
+#include "experiments/data_folders.hpp"
+#include "experiments/sweeps/sweep_spec.hpp"
 #include "experiments/tradeoff/recommend.hpp"
 #include "simulation/scene_library.hpp"
 #include "tests/catch.hpp"
@@ -107,6 +109,11 @@ double error_against_exact(const Model& model, const RunChoice& choice) {
   return worst;
 }
 
+Recommendation advised(const Model& model, const Assessment& assessment, const Requirements& wanted,
+                       double frame) {
+  return recommend(assessment, wanted, frame, whole_run_of(model, assessment.reference, wanted));
+}
+
 }  // namespace
 
 TEST_CASE("what recommend picks meets the bound on scenes held apart", "[recommend]") {
@@ -118,7 +125,7 @@ TEST_CASE("what recommend picks meets the bound on scenes held apart", "[recomme
     std::int64_t work = 0;
     for (const double bound : {1e-1, 1e-3, 1e-9}) {
       const Recommendation found =
-          recommend(assessment, {.error = bound, .penetration = 0.0}, frame);
+          advised(model, assessment, {.error = bound, .penetration = 0.0}, frame);
       CAPTURE(model.scene().name, bound);
       REQUIRE(found.pick);
       const Assessed& pick = assessment.methods[*found.pick];
@@ -134,10 +141,105 @@ TEST_CASE("what recommend picks meets the bound on scenes held apart", "[recomme
       }
     }
     // What nobody can: none.
-    CHECK_FALSE(recommend(assessment, {.error = 1e-30, .penetration = {}}, frame).pick);
+    CHECK_FALSE(advised(model, assessment, {.error = 1e-30, .penetration = {}}, frame).pick);
     Requirements hasty{.error = 1.0};
     hasty.budget = 1e-12;
-    CHECK_FALSE(recommend(assessment, hasty, frame).pick);
+    CHECK_FALSE(advised(model, assessment, hasty, frame).pick);
+  }
+}
+
+TEST_CASE("recommend advises nothing from a part of the run in which nothing happens",
+          "[recommend]") {
+  // Once the rack is broken, what differs by a hair differs by everything: methods can be compared
+  // over the first half second only, in which the white ball is still alone.
+  const auto refused = tests::kairos_program({"recommend", "billiard", "--error", "1e-2"});
+  CAPTURE(refused.out, refused.err);
+  CHECK(refused.exit_code == 1);
+  CHECK(refused.out.find("no advice") != std::string::npos);
+  CHECK(refused.err.find("no impact of ball and ball") != std::string::npos);
+  CHECK(refused.out.find("kairos run") == std::string::npos);
+}
+
+TEST_CASE("recommend looks for penetration over the whole run, asked or not", "[recommend]") {
+  const Model model(parse_scene(thrown, "apart.toml"));
+  const double frame = mean_frame_duration(model.scene().frames);
+  Assessment assessment = assess(model, 0.2, 0);  // before the first impact
+  assessment.reference.whole = model.scene().duration;
+  // Of the methods that look once a frame, by the free flight alone each one does.
+  std::erase_if(assessment.methods, [](const Assessed& method) {
+    return method.candidate.group != "original" ||
+           method.candidate.name.find('/') != std::string::npos;
+  });
+  REQUIRE(assessment.methods.size() >= 4);
+  const auto nobody_looks = [](const Assessed&) { return std::string(); };
+  CHECK(recommend(assessment, {.error = 1.0}, frame, nobody_looks).pick);
+  const Recommendation held = advised(model, assessment, {.error = 1.0}, frame);
+  CHECK_FALSE(held.pick);
+  for (const std::string& why : held.shortcomings) {
+    CHECK(why.find("deep over 3.3 s") != std::string::npos);  // a ball of 3 cm is through
+  }
+  CHECK(advised(model, assessment, {.error = 1.0, .penetration = 1.0}, frame).pick);
+}
+
+TEST_CASE("the command that recommend prints runs as it stands, with all that was set",
+          "[recommend]") {
+  const tests::TemporaryFolder folder;
+  const std::string scene = folder.file("it's a \"scene\" $HOME.toml", std::string(shot));
+  const auto advice =
+      tests::kairos_program({"recommend", scene, "--error", "1e-3", "--duration", "1/4", "--set",
+                             "body.ball.mass=3.5", "--set", "summary=a ball's flight"});
+  CAPTURE(advice.out, advice.err);
+  REQUIRE(advice.exit_code == 0);
+  const std::size_t begin = advice.out.find("kairos run ");
+  REQUIRE(begin != std::string::npos);
+  const std::string command = advice.out.substr(begin, advice.out.find('\n', begin) - begin);
+  const std::string out = folder.path("out");
+  CAPTURE(command);
+  REQUIRE(tests::in_a_shell(command + " --out " + out) == 0);
+  const std::string summary = tests::read_all(out + "/summary.json");
+  CHECK(summary.find("\"end\": 0.25") != std::string::npos);
+  CHECK(summary.find("\"name\": \"shot\"") != std::string::npos);
+  // What was set is in it: 3.5 kg at 9.1 m/s.
+  CHECK(summary.find("\"initial\": 144.9") != std::string::npos);
+}
+
+TEST_CASE("tradeoff: what ends beyond all that moves has diverged, and is on no front",
+          "[tradeoff]") {
+  // A stiff spring and steps far too long for it: the thesis' arithmetic blows up.
+  const Model model(read_scene(find_scene("spring")));
+  const Assessment assessment = assess(model, model.scene().duration, 0);
+  int diverged = 0;
+  for (auto error :
+       {&Errors::position, &Errors::event_time, &Errors::penetration, &Errors::energy}) {
+    const std::vector<bool> front = pareto_front(assessment, error);
+    for (std::size_t i = 0; i < front.size(); ++i) {
+      const Assessed& method = assessment.methods[i];
+      const bool far = !(method.errors.position <= assessment.reference.scale);
+      diverged += far ? 1 : 0;
+      CHECK_FALSE((far && front[i]));
+      CHECK((!far || !method.run.completed()));
+    }
+  }
+  CHECK(diverged > 0);
+}
+
+TEST_CASE("tradeoff: the scenes of the experiment tell frames of h/4 and h/16 apart",
+          "[tradeoff]") {
+  const ExperimentSpec spec = read_experiment(find_experiment("tradeoff"), Size::quick);
+  const Model model(read_scene(find_scene(spec.scenes.front())));
+  const Assessment assessment = assess(model, model.scene().duration, 0);
+  const auto error_of = [&](const std::string& name) {
+    for (const Assessed& method : assessment.methods) {
+      if (method.candidate.name == name) {
+        return method.errors.position;
+      }
+    }
+    return -1.0;
+  };
+  for (const std::string name : {"original velocity-verlet", "original rk4"}) {
+    // Of first order in the frame, but for where in a frame an impact happens to be.
+    CHECK(error_of(name + ", h/16") < 0.7 * error_of(name + ", h/4"));
+    CHECK(error_of(name + ", h/16") > 0.0);
   }
 }
 

@@ -12,6 +12,7 @@
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 #include <thread>
 
@@ -36,6 +37,10 @@ void connect(int stream, const std::string& path, int flags) {
     const ::rlimit limit{surroundings.largest_file, surroundings.largest_file};
     ::setrlimit(RLIMIT_FSIZE, &limit);
   }
+  if (surroundings.memory > 0) {
+    const ::rlimit limit{surroundings.memory, surroundings.memory};
+    ::setrlimit(RLIMIT_AS, &limit);
+  }
   const ::rlimit seconds{surroundings.processor_seconds, surroundings.processor_seconds};
   ::setrlimit(RLIMIT_CPU, &seconds);
   std::vector<char*> argv{const_cast<char*>(KAIROS_PROGRAM)};
@@ -49,12 +54,19 @@ void connect(int stream, const std::string& path, int flags) {
 
 }  // namespace
 
+int in_a_shell(const std::string& command) {
+  const std::string rest = command.substr(std::string_view("kairos").size());
+  const std::string line = "'" KAIROS_PROGRAM "'" + rest + " > /dev/null 2>&1";
+  const int status = std::system(line.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
 Outcome kairos_program(const std::vector<std::string>& arguments,
                        const Surroundings& surroundings) {
   const TemporaryFolder folder;
   const std::string in = folder.file("in", surroundings.input);
   const std::string out = surroundings.output.empty() ? folder.path("out") : surroundings.output;
-  const std::string err = folder.path("err");
+  const std::string err = surroundings.error.empty() ? folder.path("err") : surroundings.error;
   const ::pid_t child = ::fork();
   if (child == 0) {
     become(arguments, surroundings, in, out, err);
@@ -68,7 +80,8 @@ Outcome kairos_program(const std::vector<std::string>& arguments,
     throw std::system_error(errno, std::generic_category(), "running kairos");
   }
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status),
-          surroundings.output.empty() ? read_all(out) : "", read_all(err)};
+          surroundings.output.empty() ? read_all(out) : "",
+          surroundings.error.empty() ? read_all(err) : ""};
 }
 
 }  // namespace kairos::tests

@@ -7,8 +7,11 @@
 #include "tests/experiments/program.hpp"
 #include "tests/simulation/scenes.hpp"
 
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <string>
+#include <vector>
 
 using namespace kairos;
 using namespace kairos::experiments;
@@ -105,13 +108,106 @@ TEST_CASE("picture: wire for boxes, a glow for what is in common, the time in th
   const auto common = overlapping(footage, 0);
   REQUIRE(common.size() == 1);  // a field is no solid
   CHECK(common[0].depth == Approx(0.2));
-  PictureOptions options{.camera = camera_for(footage, 0, 0), .label = "a label"};
+  PictureOptions options{.camera = camera_for(std::vector<Shot>{{&footage, 0, 0}}, 4.0 / 3.0),
+                         .label = "a label"};
   const std::string scene = pov_scene(footage, 0, options);
   CHECK(count(scene, "cylinder {") == 36);  // plate, pad, and the box that the ball collides as
   CHECK(count(scene, "intersection {") == 1);
   CHECK(scene.find("\"0.250 s  a label\"") != std::string::npos);
   options.boxes = false;
   CHECK(count(pov_scene(footage, 0, options), "cylinder {") == 24);
+}
+
+TEST_CASE("camera: by itself it sees all that moves, high, wide, and of both runs", "[render]") {
+  const auto run = [](const Vector3& from, const Vector3& to) {
+    Footage footage;
+    footage.actors = {{"floor", "wall", HalfSpace{}, HalfSpace{}},
+                      {"hall", "wall", Box{{500, 1, 500}}, Box{{500, 1, 500}}},
+                      {"ball", "ball", Sphere{0.5}, Sphere{0.5}, true, false, true}};
+    footage.pictures = {{0.0, {Pose{}, Pose{{0, -1, 0}}, Pose{from}}},
+                        {1.0, {Pose{}, Pose{{0, -1, 0}}, Pose{to}}}};
+    return footage;
+  };
+  const Footage high = run({0, 1, 0}, {0, 31, 0});
+  const Footage wide = run({-20, 1, 0}, {20, 1, 3});
+  for (const double aspect : {4.0 / 3.0, 0.5, 3.0}) {
+    const std::vector<Shot> shots{{&high, 0, 1}, {&wide, 0, 1}};
+    const Camera camera = camera_for(shots, aspect);
+    const Vector3 ahead = (camera.target - camera.position).normalized();
+    const Vector3 right = ahead.cross(Vector3::UnitY()).normalized();
+    const Vector3 up = right.cross(ahead);
+    const double half = std::tan(camera.angle * std::numbers::pi / 360.0);
+    for (const Shot& shot : shots) {
+      for (const auto& picture : shot.footage->pictures) {
+        const Vector3 to = picture.poses[2].position - camera.position;
+        const double depth = to.dot(ahead) - 0.5;
+        CAPTURE(aspect, to.transpose());
+        REQUIRE(depth > 0.0);
+        CHECK(std::abs(to.dot(right)) + 0.5 <= half * depth);
+        CHECK(std::abs(to.dot(up)) + 0.5 <= half / aspect * depth);
+      }
+    }
+    // Not from so far that what stands still, a hundred times larger, is seen as a whole.
+    CHECK((camera.target - camera.position).norm() < 300.0);
+  }
+}
+
+TEST_CASE("picture: no wall stands before the eye, and none hides what is behind it", "[render]") {
+  Footage footage;
+  footage.actors = {{"floor", "wall", HalfSpace{}, HalfSpace{}},
+                    {"ball", "ball", Sphere{0.5}, Sphere{0.5}, true, false, true}};
+  footage.pictures = {{0.0, {Pose{}, Pose{{0, 1, 0}}}}};
+  PictureOptions options;
+  options.camera = {{0, 3, 9}, {0, 1, 0}};
+  CHECK(count(pov_scene(footage, 0, options), "transmit 0 ") == 3);  // two colours and the ball
+  footage.pictures[0].poses[1].position.y() = -2.0;  // through the floor, as the thesis saw it
+  CHECK(count(pov_scene(footage, 0, options), "transmit 0.5 ") == 2);
+  options.camera.position.y() = -1.0;
+  CHECK(count(pov_scene(footage, 0, options), "checker") == 0);
+}
+
+TEST_CASE("picture: no text gets out of its string", "[render][paths]") {
+  const Footage footage = still();
+  const std::string evil = "x\" } #fopen F \"/etc/evil\" write \\\n\x01\xff";
+  const PictureOptions options{.camera = camera_for(std::vector<Shot>{{&footage, 0, 0}}, 1.0),
+                               .label = evil};
+  const std::string scene = pov_scene(footage, 0, options);
+  const std::size_t begin = scene.find("text { internal 1 \"") + 18;
+  std::size_t end = begin + 1;
+  while (scene[end] != '"') {
+    end += scene[end] == '\\' ? 2 : 1;
+  }
+  CHECK(scene.substr(end, 10) == "\", 1, 0 pi");
+  CHECK(scene.substr(begin, end - begin).find('\n') == std::string::npos);
+  CHECK(scene.substr(begin, end - begin).find("#fopen") != std::string::npos);  // as a text
+}
+
+TEST_CASE("kairos render: folders of any name, and no picture of an earlier film is left",
+          "[render][paths]") {
+  if (!why_no_povray().empty()) {
+    return;
+  }
+  const TemporaryFolder folder;
+  const std::string run = folder.path("a\" } #error \"%d");
+  REQUIRE(kairos_program({"run", "bounce", "--duration", "1", "--out", run}).exit_code == 0);
+  const std::string frames = folder.path("fr\"%05d");
+  const auto render = [&](const std::string& every) {
+    return kairos_program(
+        {"render", run, "--beside", run, "--out", frames, "--every", every, "--size", "16x16"});
+  };
+  const auto first = render("0.25");
+  CAPTURE(first.err);
+  REQUIRE(first.exit_code == 0);
+  const auto pictures = [&] {
+    std::size_t found = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(frames)) {
+      found += entry.path().extension() == ".png" ? 1 : 0;
+    }
+    return found;
+  };
+  CHECK(pictures() == 5);
+  REQUIRE(render("0.5").exit_code == 0);
+  CHECK(pictures() == 3);
 }
 
 TEST_CASE("camera: seven numbers, and nothing that looks nowhere", "[render][input]") {

@@ -83,7 +83,7 @@ stratified = { from = 2, to = 4 }
 name = "free"
 random = { from = -1, to = 1 }
 )";
-  const auto plan = plan_sweep(spec(text));
+  const auto plan = SweepPlan(spec(text));
   REQUIRE(plan.size() == 200);
   for (std::size_t i = 0; i < 200; ++i) {
     const double phase = plan[i].values.at("phase");
@@ -94,12 +94,12 @@ random = { from = -1, to = 1 }
     CHECK(plan[i].values.at("free") == plan[(i + 100) % 200].values.at("free"));
   }
   CHECK(plan[0].values.at("free") != plan[50].values.at("free"));
-  const auto other = plan_sweep(spec("seed = 2\n" + text));
+  const auto other = SweepPlan(spec("seed = 2\n" + text));
   CHECK(plan[0].values.at("free") != other[0].values.at("free"));
 }
 
 TEST_CASE("plan: expressions reach scene values and method options", "[sweep]") {
-  const auto plan = plan_sweep(spec(head + R"(
+  const auto plan = SweepPlan(spec(head + R"(
 [constants]
 frame = "1/50"
 [options]

@@ -49,7 +49,12 @@ void Agenda::Entry::persist(Archive& archive) {
   archive(time, due, a, b, version_a, version_b, patience, decided);
 }
 
-void Agenda::persist(Archive& archive) { archive(version_, heap_, crowded_); }
+void Agenda::persist(Archive& archive) {
+  archive(version_, heap_, crowded_);
+  for (const Entry& entry : heap_) {
+    archive.require(entry.a < by_name_.size() && entry.b < by_name_.size());
+  }
+}
 
 }  // namespace core
 }  // namespace kairos

@@ -24,6 +24,7 @@ enum class Due : std::uint8_t {
   recheck,        ///< ask the detector again
   impact,
 };
+constexpr Due last_of(Due) { return Due::impact; }
 
 /// An event that has come up.
 struct DueEvent {

@@ -362,6 +362,12 @@ void EventMotions::persist(Archive& archive) {
     }
   }
   archive(now_, booked_, field_forces_, bodies_);
+  for (const MovingBody& body : bodies_) {
+    archive.require(!body.support || body.support->surface < bodies_.size());
+    for (const BodyIndex field : body.fields) {
+      archive.require(field < bodies_.size());
+    }
+  }
   for (Flow& flow : flows_) {
     archive(flow);
   }

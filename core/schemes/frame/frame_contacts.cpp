@@ -113,7 +113,12 @@ void FrameContacts::tell_fields_left() {
 }
 
 void FrameContacts::FieldContact::persist(Archive& archive) { archive(field, body, seen); }
-void FrameContacts::persist(Archive& archive) { archive(in_field_); }
+void FrameContacts::persist(Archive& archive) {
+  archive(in_field_);
+  for (const FieldContact& inside : in_field_) {
+    archive.require(inside.field < run_.model.size() && inside.body < run_.model.size());
+  }
+}
 
 }  // namespace core
 }  // namespace kairos

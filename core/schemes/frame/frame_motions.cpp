@@ -177,6 +177,12 @@ void FrameMotions::fly(Mover& mover, double from, double to) {
   begin_step(mover, run_.time + from);
   for (double done = from; done < to;) {
     if (!step(mover, done, to)) {
+      // The run is stopped; until its scheme gets there, bodies are where they came to.
+      for (const BodyIndex i : mover.island.bodies) {
+        const Pose pose = paths_[i].empty() ? run_.bodies[i].pose
+                                            : paths_[i].back().pose(paths_[i].back().duration);
+        paths_[i].push_back(Motion::at_rest(run_.time + done, pose));
+      }
       return;
     }
     mover.stepper->dense_output(mover.motions);

@@ -45,9 +45,14 @@ class FrameClock {
     return true;
   }
 
-  void persist(Archive& archive) { archive(index_); }
+  void persist(Archive& archive) {
+    archive(index_);
+    archive.require(index_ >= 0 && index_ < most_frames);
+  }
 
  private:
+  static constexpr std::int64_t most_frames = std::int64_t{1} << 62;
+
   FrameTimes frames_;
   Instant end_;
   std::int64_t index_ = 0;

@@ -17,6 +17,7 @@ enum class Grasp {
   holding,  ///< closed: the body is where the hand is, with the hand's velocity (our reading)
   leaving,  ///< let go of, and not yet clear of the hand
 };
+constexpr Grasp last_of(Grasp) { return Grasp::leaving; }
 
 /// One `Grasp` for each grip of the model, by its index. While it is not `open`, the held body has
 /// no contacts and feels no field.

@@ -54,6 +54,9 @@ class JournaledStepper final : public Stepper {
   }
 
   bool persist(Archive& archive) override {
+    if (archive.reading()) {
+      journal_.clear();
+    }
     archive(journal_);
     if (archive.reading()) {
       tell_again();
@@ -63,6 +66,7 @@ class JournaledStepper final : public Stepper {
 
  private:
   enum class Call : std::uint8_t { start, restart, step };
+  friend constexpr Call last_of(Call) { return Call::step; }
   /// States and forces are noted where they are not what the last call left.
   struct Entry {
     Call call = Call::step;
