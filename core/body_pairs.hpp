@@ -82,8 +82,23 @@ class BodyPairs {
     return roles_.empty() ? Iterator() : Iterator(*this, roles_.size());
   }
   [[nodiscard]] bool empty() const { return begin() == end(); }
+  /// Counted by role: what is the same for all bodies of two roles is asked once.
   [[nodiscard]] std::size_t size() const {
-    return static_cast<std::size_t>(std::distance(begin(), end()));
+    constexpr PairRole roles[] = {{false, false}, {false, true}, {true, false}, {true, true}};
+    std::size_t count[4] = {};
+    for (const PairRole& role : roles_) {
+      ++count[(role.free ? 2 : 0) + (role.field ? 1 : 0)];
+    }
+    std::size_t pairs = 0;
+    for (std::size_t a = 0; a < 4; ++a) {
+      for (std::size_t b = a; b < 4; ++b) {
+        if (all_ || interaction(roles[a], roles[b])) {
+          pairs +=
+              a == b ? count[a] * (count[a] - (count[a] > 0 ? 1 : 0)) / 2 : count[a] * count[b];
+        }
+      }
+    }
+    return pairs;
   }
   [[nodiscard]] bool contains(BodyIndex a, BodyIndex b) const {
     return all_ || interaction(roles_[a], roles_[b]);

@@ -79,15 +79,15 @@ SchemeOptions scheme_options(const Scene& scene, const RunChoice& choice) {
   return options;
 }
 
-Plan make_plan(const Model& model, const RunChoice& choice) {
+Plan make_plan(const Model& model, const RunChoice& choice, const PlugIns& own) {
   check_numbers(choice);
-  const auto detector = find_detector(choice.method.detector);
+  const auto detector = own.detector ? own.detector : find_detector(choice.method.detector);
   const auto integrator =
       detector->info().at_step_ends ? find_watching_integrator : find_integrator;
-  Plan plan{find_scheme(choice.method.scheme),
-            {integrator(choice.method.integrator, choice.stepper), detector,
-             find_impact_law(choice.method.impact), find_broad_phase(model.broad_phase()),
-             swept_bounds()},
+  Plan plan{own.scheme ? own.scheme : find_scheme(choice.method.scheme),
+            {own.integrator ? own.integrator : integrator(choice.method.integrator, choice.stepper),
+             detector, own.impact ? own.impact : find_impact_law(choice.method.impact),
+             find_broad_phase(model.broad_phase()), swept_bounds()},
             scheme_options(model.scene(), choice)};
   if (choice.cold_restarts) {
     plan.method.stepper = [make = plan.method.stepper](const Model& of, std::size_t island) {
@@ -164,13 +164,13 @@ void continue_as(const Continuation& continuation, Plan& plan) {
 
 MethodChoice MethodChoice::thesis() { return {"original", "thesis-euler", "sat", "thesis"}; }
 
-std::string why_refused(const Model& model, const RunChoice& choice) {
-  return refusal(model, make_plan(model, choice));
+std::string why_refused(const Model& model, const RunChoice& choice, const PlugIns& own) {
+  return refusal(model, make_plan(model, choice, own));
 }
 
 RunResult simulate(const Model& model, const RunChoice& choice, Recorder& recorder,
-                   const Continuation& continuation) {
-  Plan plan = make_plan(model, choice);
+                   const Continuation& continuation, const PlugIns& own) {
+  Plan plan = make_plan(model, choice, own);
   if (const std::string reason = refusal(model, plan); !reason.empty()) {
     throw InputError(model.scene().path, 0, "", reason);
   }
@@ -186,10 +186,10 @@ RunResult simulate(const Model& model, const RunChoice& choice, Recorder& record
   }
 }
 
-Simulation simulate(const Scene& scene, const RunChoice& choice) {
+Simulation simulate(const Scene& scene, const RunChoice& choice, const PlugIns& own) {
   const Model model(scene);
   Simulation simulation;
-  simulation.result = simulate(model, choice, simulation.trajectory);
+  simulation.result = simulate(model, choice, simulation.trajectory, {}, own);
   return simulation;
 }
 

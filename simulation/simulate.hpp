@@ -5,6 +5,7 @@
 #include "core/scheme.hpp"
 #include "core/trajectory.hpp"
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -46,21 +47,31 @@ struct Continuation {
   std::string_view resume = {};        ///< what a keeper was given; empty: from the start
 };
 
+/// Plug-ins of one's own, in the place of those that a choice names; null: the named one.
+struct PlugIns {
+  std::shared_ptr<const Scheme> scheme = {};
+  IslandStepper integrator = {};  ///< makes a stepper for each island
+  std::shared_ptr<const ContactDetector> detector = {};
+  std::shared_ptr<const ImpactLaw> impact = {};
+};
+
 /// Resolves the names, refuses what cannot work (`InputError` with the reason), runs. A checkpoint
 /// must be of the same model, choice and kind of recorder; throws `ArchiveError` where it is not
 /// one. `--duration` alone may differ.
 RunResult simulate(const Model& model, const RunChoice& choice, Recorder& recorder,
-                   const Continuation& continuation = {});
+                   const Continuation& continuation = {}, const PlugIns& own = {});
 
 /// The reason why this combination cannot run on this model; empty if it can.
-[[nodiscard]] std::string why_refused(const Model& model, const RunChoice& choice);
+[[nodiscard]] std::string why_refused(const Model& model, const RunChoice& choice,
+                                      const PlugIns& own = {});
 
 /// The shortest way: builds the model, runs, keeps everything in memory.
 struct Simulation {
   RunResult result;
   Trajectory trajectory;
 };
-[[nodiscard]] Simulation simulate(const Scene& scene, const RunChoice& choice = {});
+[[nodiscard]] Simulation simulate(const Scene& scene, const RunChoice& choice = {},
+                                  const PlugIns& own = {});
 
 }  // namespace simulation
 }  // namespace kairos
