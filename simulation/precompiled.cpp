@@ -1,0 +1,1 @@
+// The source of the precompiled header (see the top CMakeLists.txt): it has none of its own.
