@@ -38,8 +38,8 @@ struct SchemeOptions {
   double threshold = 0.0;       ///< m; fig. 15's largest movement; 0: half of the smallest extent
   bool equal_substeps = false;  ///< the mend of fig. 15: a frame in equal parts
   std::int64_t max_substeps = 100000;  ///< in one frame; more is refused with a reason
-  std::int64_t max_events = 0;  ///< of event-driven in one frame; 0: see `WorkBudget`
-  double toi_tolerance = 0.0;   ///< m; 0: the detector's default
+  std::int64_t max_events = 0;         ///< of event-driven in one frame; 0: see `WorkBudget`
+  double toi_tolerance = 0.0;          ///< m; 0: the detector's default
   bool roundoff = false;               ///< replay steps in double-double for the ledger's roundoff
   CheckpointKeeper* keeper = nullptr;  ///< takes checkpoints; null: none are made
   std::string_view resume = {};        ///< a checkpoint to go on from; empty: from the start

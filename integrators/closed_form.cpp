@@ -153,8 +153,18 @@ class ClosedForm final : public Stepper {
 
   // Two unit quaternions e apart turn a point at distance r to places at most 2 r e apart; another
   // factor of 2 normalises the polynomial; 64 eps covers the rounding of its nodes.
-  void tumble([[maybe_unused]] const Leg& leg, [[maybe_unused]] Motion& motion) const {
+  void tumble(const Leg& leg, Motion& motion) const {
     leg.top.fit(start_ - epoch_, h_, motion);
+    // A motion starts at the state bit for bit: the fit is moved by its roundoff, to the state's
+    // side of the quaternions.
+    const Vector4 q = as_vector(leg.before.pose.orientation);
+    if (q.dot(motion.quaternion[0]) < 0.0) {
+      for (int k = 0; k <= motion.quaternion.degree(); ++k) {
+        motion.quaternion[k] = -motion.quaternion[k];
+      }
+    }
+    motion.quaternion[0] = q;
+    motion.angular_velocity[0] = leg.before.twist.angular;
     motion.error_radius = leg.bounding_radius * (4.0 * leg.top.fit_error(h_) +
                                                  64.0 * std::numeric_limits<double>::epsilon());
   }

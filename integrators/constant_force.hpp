@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/stepper.hpp"
 #include "core/double_double.hpp"
+#include "core/stepper.hpp"
 
 namespace kairos::integrators {
 

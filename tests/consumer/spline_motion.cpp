@@ -13,7 +13,9 @@ int main() {
   // x = 3 t^2 - 2 t^3: from rest at 0 to rest at 1 m in a second; then straight on at rest.
   Motion reach;
   reach.duration = 1.0;
-  reach.position = Polynomial<3>({0, 0, 0}, {0, 0, 0}, {3, 0, 0}, {-2, 0, 0});
+  using Coefficient = Polynomial<3>::Value;
+  reach.position = Polynomial<3>(Coefficient(0, 0, 0), Coefficient(0, 0, 0), Coefficient(3, 0, 0),
+                                 Coefficient(-2, 0, 0));
   reach.velocity = reach.position.differentiated();
   Motion wait = Motion::at_rest(reach.end(), reach.pose(reach.duration));
 

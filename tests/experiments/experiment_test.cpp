@@ -52,7 +52,9 @@ void check_name(const std::string& name, bool equal_substeps) {
 TEST_CASE("a method has one name, in sweeps, comparisons, trade-offs and rallies", "[experiment]") {
   for (const std::string& name : shipped_experiments()) {
     for (const SweepSpec& sweep : read_experiment(find_experiment(name), Size::quick).sweeps) {
-      for (const PlannedRun& run : plan_sweep(sweep)) {
+      const SweepPlan plan(sweep);
+      for (std::size_t i = 0; i < plan.size(); ++i) {
+        const PlannedRun run = plan[i];
         if (run.point == 0 && run.repeat == 0) {
           check_name(sweep.methods[run.method].name, run.choice.equal_substeps);
         }
