@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/nearest_name.hpp"
+#include "experiments/cli/command_view.hpp"
 #include "experiments/cli/commands.hpp"
 #include "experiments/run_error.hpp"
 #include "simulation/version.hpp"
@@ -50,6 +51,7 @@ void add_commands(CLI::App& app) {
   add_experiment_command(app);
   add_reproduce_command(app);
   add_render_command(app);
+  add_view_command(app);
   add_record_command(app);
   add_physworld_command(app);
   add_bench_command(app);

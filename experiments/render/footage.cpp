@@ -3,7 +3,7 @@
 #include "core/error.hpp"
 #include "core/reading/csv.hpp"
 #include "core/reading/document.hpp"
-#include "experiments/output/table.hpp"
+#include "experiments/output/table_rows.hpp"
 
 #include <fmt/format.h>
 
@@ -17,47 +17,6 @@ namespace kairos::experiments {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Fields of a table by column name, with complaints that name file and line.
-class Rows {
- public:
-  explicit Rows(const std::string& path) : path_(path), table_(read_csv(path)) {
-    for (std::size_t c = 0; c < table_.columns.size(); ++c) {
-      columns_[table_.columns[c]] = c;
-    }
-  }
-  [[nodiscard]] std::size_t size() const { return table_.rows.size(); }
-  [[nodiscard]] std::string text(std::size_t row, const std::string& column) const {
-    const auto found = columns_.find(column);
-    if (found == columns_.end()) {
-      throw InputError(path_, 1, column, "column is missing; is this what `kairos run` wrote?");
-    }
-    if (found->second >= table_.rows[row].size()) {
-      fail(row, column, "is missing (is the file truncated?)");
-    }
-    return to_text(table_.rows[row][found->second]);
-  }
-  [[nodiscard]] double number(std::size_t row, const std::string& column) const {
-    const std::string field = text(row, column);
-    const auto x = parse_number(field);
-    if (!x) {
-      fail(row, column, fmt::format("\"{}\" is no number; allowed: a finite number", field));
-    }
-    return *x;
-  }
-  [[nodiscard]] Vector3 vector(std::size_t row, const char* x, const char* y, const char* z) const {
-    return {number(row, x), number(row, y), number(row, z)};
-  }
-  [[noreturn]] void fail(std::size_t row, const std::string& column,
-                         const std::string& reason) const {
-    throw InputError(path_, static_cast<int>(row) + 2, column, reason);
-  }
-
- private:
-  std::string path_;
-  Table table_;
-  std::map<std::string, std::size_t> columns_;
-};
 
 /// The bodies of a `summary.json`, which holds one member a line, as `JsonWriter` writes it.
 class Summary {
@@ -184,7 +143,7 @@ class Summary {
   std::vector<Fields> bodies_;
 };
 
-void read_pictures(const Rows& rows, Footage& footage) {
+void read_pictures(const TableRows& rows, Footage& footage) {
   std::map<std::string, std::size_t> index;
   for (std::size_t i = 0; i < footage.actors.size(); ++i) {
     index[footage.actors[i].name] = i;
@@ -259,7 +218,7 @@ Footage read_footage(const std::string& path) {
   Footage footage;
   footage.title = fs::absolute(trajectory).parent_path().filename().string();
   footage.actors = Summary(summary.string()).actors();
-  read_pictures(Rows(trajectory.string()), footage);
+  read_pictures(TableRows(trajectory.string()), footage);
   if (footage.pictures.empty()) {
     throw InputError(trajectory.string(), 0, "", "holds no frame");
   }
