@@ -20,10 +20,12 @@ using tests::kairos_program;
 using tests::TemporaryFolder;
 
 // What only this test archives.
-namespace kairos::inline core {
+namespace kairos {
+inline namespace core {
 constexpr EventKind last_of(EventKind) { return EventKind::released; }
 constexpr RunStatus last_of(RunStatus) { return RunStatus::stopped; }
-}  // namespace kairos::inline core
+}  // namespace core
+}  // namespace kairos
 
 namespace {
 
