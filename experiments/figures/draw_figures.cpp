@@ -42,8 +42,10 @@ std::string draw_figures(const std::string& script, const std::string& folder) {
   const std::string name = script.empty() ? "lines" : script;
   std::string module = name;  // as Python imports it
   std::replace(module.begin(), module.end(), '-', '_');
+  std::string file = module;  // thesis.fig01 is thesis/fig01.py
+  std::replace(file.begin(), file.end(), '.', '/');
   std::error_code none;
-  if (!std::filesystem::is_regular_file(std::filesystem::path(scripts) / (module + ".py"), none)) {
+  if (!std::filesystem::is_regular_file(std::filesystem::path(scripts) / (file + ".py"), none)) {
     return fmt::format("no figures: there is no script '{}'", name);
   }
   const std::string python = find_python();
