@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <latch>
+#include <memory>
 #include <mutex>
 #include <new>
 #include <system_error>
@@ -14,16 +16,25 @@ std::size_t default_threads() {
 }
 
 std::vector<std::jthread> start_threads(std::size_t count, const std::function<void()>& work) {
+  // Stacks must not take what the work itself needs: this is kept free until all have started, and
+  // none works before. It is too little for an allocator's arena, which only one thread would use.
+  constexpr std::size_t reserve = std::size_t{48} << 20;  // bytes
+  const auto started = std::make_shared<std::latch>(1);
   std::vector<std::jthread> threads;
   try {
+    const std::vector<char> kept(count > 0 ? reserve : 0);
     threads.reserve(count);
     for (std::size_t t = 0; t < count; ++t) {
-      threads.emplace_back(work);
+      threads.emplace_back([started, work] {
+        started->wait();
+        work();
+      });
     }
   } catch (const std::system_error&) {
     // The system has no more to give, in threads or in memory: those that there are do the work.
   } catch (const std::bad_alloc&) {
   }
+  started->count_down();
   return threads;
 }
 
