@@ -23,6 +23,7 @@ void add_physworld_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 void add_tradeoff_command(CLI::App& app);
 void add_recommend_command(CLI::App& app);
+void add_view_command(CLI::App& app);
 void add_random_scenes_command(CLI::App& app);
 
 }  // namespace kairos::experiments

@@ -4,7 +4,7 @@
 #include "core/reading/csv.hpp"
 #include "core/reading/document.hpp"
 #include "experiments/output/output_folder.hpp"
-#include "experiments/output/table.hpp"
+#include "experiments/output/table_rows.hpp"
 
 #include <fmt/format.h>
 
@@ -18,47 +18,6 @@ namespace kairos::experiments {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Fields of a table by column name, with complaints that name file and line.
-class Rows {
- public:
-  explicit Rows(const std::string& path) : path_(path), table_(read_csv(path)) {
-    for (std::size_t c = 0; c < table_.columns.size(); ++c) {
-      columns_[table_.columns[c]] = c;
-    }
-  }
-  [[nodiscard]] std::size_t size() const { return table_.rows.size(); }
-  [[nodiscard]] std::string text(std::size_t row, const std::string& column) const {
-    const auto found = columns_.find(column);
-    if (found == columns_.end()) {
-      throw InputError(path_, 1, column, "column is missing; is this what `kairos run` wrote?");
-    }
-    if (found->second >= table_.rows[row].size()) {
-      fail(row, column, "is missing (is the file truncated?)");
-    }
-    return to_text(table_.rows[row][found->second]);
-  }
-  [[nodiscard]] double number(std::size_t row, const std::string& column) const {
-    const std::string field = text(row, column);
-    const auto x = parse_number(field);
-    if (!x) {
-      fail(row, column, fmt::format("\"{}\" is no number; allowed: a finite number", field));
-    }
-    return *x;
-  }
-  [[nodiscard]] Vector3 vector(std::size_t row, const char* x, const char* y, const char* z) const {
-    return {number(row, x), number(row, y), number(row, z)};
-  }
-  [[noreturn]] void fail(std::size_t row, const std::string& column,
-                         const std::string& reason) const {
-    throw InputError(path_, static_cast<int>(row) + 2, column, reason);
-  }
-
- private:
-  std::string path_;
-  Table table_;
-  std::map<std::string, std::size_t> columns_;
-};
 
 /// The bodies of a `summary.json`, which holds one member a line, as `JsonWriter` writes it.
 class Summary {
@@ -185,7 +144,7 @@ class Summary {
   std::vector<Fields> bodies_;
 };
 
-void read_pictures(const Rows& rows, Footage& footage) {
+void read_pictures(const TableRows& rows, Footage& footage) {
   std::map<std::string, std::size_t> index;
   for (std::size_t i = 0; i < footage.actors.size(); ++i) {
     index[footage.actors[i].name] = i;
@@ -262,7 +221,7 @@ Footage read_footage(const std::string& path) {
   footage.title = absolute.parent_path().filename().string();
   const std::string before = read_text_file(summary.string());
   footage.actors = Summary(summary.string(), before).actors();
-  read_pictures(Rows(trajectory.string()), footage);
+  read_pictures(TableRows(trajectory.string()), footage);
   if (incomplete(summary.parent_path()) || read_text_file(summary.string()) != before) {
     throw InputError(summary.string(), 0, "",
                      "belongs to other files than lie beside it: a run was writing them, or was "

@@ -1,0 +1,151 @@
+// What `kairos view` puts into the page, see README.md.
+
+export type ShapeKind = "sphere" | "box" | "half-space";
+
+/** Half extents (m), or the outward normal of a half-space in the body's frame. */
+export interface Shape {
+  kind: ShapeKind;
+  x: number;
+  y: number;
+  z: number;
+}
+
+export interface Body {
+  name: string;
+  entity: string;
+  moves: "fixed" | "driven" | "free";
+  field: boolean;
+  shape: Shape;
+  collides: Shape;
+}
+
+export const eventKinds = [
+  "impact",
+  "contact begins",
+  "contact ends",
+  "field entered",
+  "field left",
+  "grasped",
+  "released",
+] as const;
+
+/** A run: SI units, world frame, y up. */
+export interface Run {
+  title: string;
+  summary: string;
+  method: string;
+  note: string;
+  reason: string;
+  bodies: Body[];
+  /** Motions of body i are those from first[i] to first[i + 1] - 1. */
+  first: Uint32Array;
+  start: Float64Array;
+  duration: Float64Array;
+  layout: Uint8Array;
+  coefficients: Float64Array;
+  frames: Float64Array;
+  energy: { name: string; values: Float64Array }[];
+  events: Events;
+  end: number;
+}
+
+export interface Events {
+  time: Float64Array;
+  kind: Uint8Array;
+  pair: Uint32Array;
+  gap: Float64Array;
+  approach: Float64Array;
+  /** Of each event: contact point, normal from a to b, impulse on b. */
+  vectors: Float64Array;
+}
+
+interface Entry {
+  type: "f64" | "u32" | "u8";
+  offset: number;
+  length: number;
+}
+
+interface RunText {
+  title: string;
+  summary: string;
+  method: string;
+  note: string;
+  reason: string;
+  bodies: Record<string, Body>;
+  arrays: Record<string, Entry>;
+}
+
+const digits = new Uint8Array(128);
+[..."ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/"].forEach((c, i) => {
+  digits[c.charCodeAt(0)] = i;
+});
+
+/** RFC 4648; `atob` would make a text of it first. */
+export function fromBase64(text: string): ArrayBuffer {
+  const padding = text.endsWith("==") ? 2 : text.endsWith("=") ? 1 : 0;
+  const bytes = new Uint8Array((text.length / 4) * 3 - padding);
+  let out = 0;
+  for (let i = 0; i < text.length; i += 4) {
+    const group =
+      (digits[text.charCodeAt(i)] << 18) |
+      (digits[text.charCodeAt(i + 1)] << 12) |
+      (digits[text.charCodeAt(i + 2) & 127] << 6) |
+      digits[text.charCodeAt(i + 3) & 127];
+    bytes[out++] = group >> 16;
+    if (out < bytes.length) bytes[out++] = (group >> 8) & 255;
+    if (out < bytes.length) bytes[out++] = group & 255;
+  }
+  return bytes.buffer;
+}
+
+function readRun(text: RunText, block: string): Run {
+  const buffer = fromBase64(block);
+  const find = (name: string): Entry => {
+    const entry = text.arrays[name];
+    if (!entry) throw new Error(`the page holds no ${name}`);
+    return entry;
+  };
+  const f64 = (name: string) => new Float64Array(buffer, find(name).offset, find(name).length);
+  const u32 = (name: string) => new Uint32Array(buffer, find(name).offset, find(name).length);
+  const u8 = (name: string) => new Uint8Array(buffer, find(name).offset, find(name).length);
+  const frames = f64("frames");
+  return {
+    title: text.title,
+    summary: text.summary,
+    method: text.method,
+    note: text.note,
+    reason: text.reason,
+    bodies: Object.values(text.bodies),
+    first: u32("first"),
+    start: f64("start"),
+    duration: f64("duration"),
+    layout: u8("layout"),
+    coefficients: f64("coefficients"),
+    frames,
+    energy: Object.keys(text.arrays)
+      .filter((name) => name.startsWith("energy."))
+      .map((name) => ({ name: name.slice("energy.".length).replaceAll("-", " "), values: f64(name) })),
+    events: {
+      time: f64("event.time"),
+      kind: u8("event.kind"),
+      pair: u32("event.pair"),
+      gap: f64("event.gap"),
+      approach: f64("event.approach"),
+      vectors: f64("event.vectors"),
+    },
+    end: frames.length > 0 ? frames[frames.length - 1] : 0,
+  };
+}
+
+/** The runs of this page. */
+export function readPage(): Run[] {
+  const json = document.getElementById("kairos-run")?.textContent;
+  if (!json) throw new Error("this page holds no run: `kairos view` makes one that does");
+  const page = JSON.parse(json) as { runs: Record<string, RunText> };
+  return Object.values(page.runs).map((text, i) => {
+    const block = document.getElementById(`kairos-numbers-${i}`);
+    const run = readRun(text, block?.textContent ?? "");
+    block?.remove();
+    return run;
+  });
+}

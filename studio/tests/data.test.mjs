@@ -1,0 +1,172 @@
+// What the page computes: poses as the program wrote them, text as text, work that does not grow.
+import assert from "node:assert/strict";
+import { readFile, writeFile } from "node:fs/promises";
+import { dirname, join } from "node:path";
+import { after, before, test } from "node:test";
+import { browser, folder, kairos, open, program } from "./pages.mjs";
+import { modules, runsOf } from "./modules.mjs";
+import { syntheticPage } from "./synthetic.mjs";
+
+const template = join(dirname(program), "../studio/viewer.html");
+let chrome, place;
+before(async () => {
+  chrome = await browser();
+  place = await folder();
+});
+after(async () => {
+  await chrome?.close();
+  await place?.remove();
+});
+
+/** trajectory.csv as [time, poses by body]. */
+async function drawnFrames(path) {
+  const [head, ...lines] = (await readFile(path, "utf8")).trim().split("\n");
+  const columns = head.split(",");
+  const frames = [];
+  for (const line of lines) {
+    const fields = line.split(",");
+    const t = Number(fields[0]);
+    if (frames.at(-1)?.[0] !== t) frames.push([t, []]);
+    frames.at(-1)[1].push(["px", "py", "pz", "qw", "qx", "qy", "qz"].map((name) => Number(fields[columns.indexOf(name)])));
+  }
+  return frames;
+}
+
+/** The largest difference of any coordinate (m), or component of a quaternion up to its sign. */
+function largest(a, b) {
+  const sign = a.slice(3).reduce((sum, x, k) => sum + x * b[3 + k], 0) < 0 ? -1 : 1;
+  return Math.max(...a.map((x, k) => Math.abs(x - (k < 3 ? 1 : sign) * b[k])));
+}
+
+/** 1e-9: coordinates are metres of order one; roundoff and the merging of motions stay far below. */
+function compare(frames, posesAt, where) {
+  let worst = [0, "nowhere"];
+  for (const [t, bodies] of frames) {
+    const poses = posesAt(t);
+    bodies.forEach((body, i) => {
+      const off = largest(body, poses[i]);
+      if (!(off <= worst[0])) worst = [off, `body ${i} at ${t} s`];
+    });
+  }
+  assert.ok(frames.length > 1);
+  assert.ok(worst[0] <= 1e-9, `${where}: off by ${worst[0]}: ${worst[1]}`);
+}
+
+const short = ["--duration", "3"];
+const cases = [
+  ["bounce", ...short], ["bounce", ...short, "--thesis"], ["bat"], ["bat", "--thesis"], ["billiard", ...short],
+  ["spinning-box"], ["spinning-box", "--integrator", "dopri5"], ["table-tennis", "--duration", "5"],
+  ["table-tennis", "--duration", "5", "--thesis"], ["flipping-box", ...short], ["conveyor", ...short], ["pad", ...short],
+  ["balloon", ...short], ["spring", ...short], ["piston", ...short], ["stroke"], ["stroke", "--thesis"],
+  ["bounce", ...short, "--scheme", "bisected"], ["bounce", ...short, "--scheme", "substepped"],
+];
+const fileOf = ([scene, ...method]) => join(place.path, [scene, ...method].join("_"));
+
+test("the page's modules put bodies where trajectory.csv has them at the times of frames", async (t) => {
+  const { readPage, Motions, newState } = await modules(place.path, "data.ts", "motion.ts");
+  const state = newState();
+  for (const words of cases) {
+    await t.test(words.join(" "), async () => {
+      const out = fileOf(words);
+      await kairos("run", ...words, "--out", out).catch((stopped) => assert.equal(stopped.code, 1));
+      const frames = await drawnFrames(join(out, "trajectory.csv"));
+      for (const source of [words, [out]]) {
+        await kairos("view", ...source, "--out", `${out}.html`);
+        const [run] = await runsOf(readPage, `${out}.html`);
+        const motions = new Motions(run);
+        const posesAt = (time) => run.bodies.map((_, i) => {
+          const at = motions.at(i, time, state);
+          return [at.px, at.py, at.pz, at.qw, at.qx, at.qy, at.qz];
+        });
+        compare(frames, posesAt, source.join(" "));
+        compare(frames.slice().reverse(), posesAt, `${source.join(" ")}, backwards`);
+      }
+    });
+  }
+});
+
+test("a body between frames is where the motion has it: a ball in free fall, at any time", async () => {
+  const { readPage, Motions, newState } = await modules(place.path, "data.ts", "motion.ts");
+  const file = join(place.path, "fall.html");
+  await kairos("view", "bounce", "--duration", "0.3", "--out", file);
+  const [run] = await runsOf(readPage, file);
+  const ball = run.bodies.findIndex((body) => body.moves === "free");
+  const motions = new Motions(run);
+  const { py: y0 } = motions.at(ball, 0, newState());
+  for (const t of [0.001234, 0.1, 0.2718281]) {
+    const { py, vy } = motions.at(ball, t, newState());
+    assert.ok(Math.abs(py - (y0 - 4.9 * t * t)) < 1e-12 && Math.abs(vy + 9.8 * t) < 1e-12);
+  }
+});
+
+for (const words of [["bounce", ...short, "--thesis"], ["table-tennis", "--duration", "5"]]) {
+  test(`${words.join(" ")}: poses evaluated in the browser are those of trajectory.csv`, async () => {
+    const out = fileOf(words);
+    await kairos("run", ...words, "--out", out);
+    await kairos("view", ...words, "--out", `${out}.html`);
+    const frames = await drawnFrames(join(out, "trajectory.csv"));
+    const { page, context } = await open(chrome, `${out}.html`);
+    const poses = await page.evaluate((times) => times.map((t) => window.kairos.poses(0, t)), frames.map(([t]) => t));
+    const index = new Map(frames.map(([t], n) => [t, n]));
+    compare(frames, (t) => poses[index.get(t)], words.join(" "));
+    await context.close();
+  });
+}
+
+test("text of a scene is text, whatever it holds", async () => {
+  const file = join(place.path, "hostile.html");
+  const hostile = '</script><script>window.caught = 1</script><img src=x onerror="window.caught = 2"><!--';
+  await syntheticPage(template, file, { bodies: 2, frames: 60, text: hostile });
+  const { page, context, said } = await open(chrome, file);
+  assert.equal(await page.evaluate(() => window.caught), undefined);
+  assert.equal(await page.textContent("#title"), hostile);
+  assert.equal(await page.locator("main img").count(), 0);
+  assert.deepEqual(said.filter((line) => !line.includes("GL Driver Message")), []);
+  await context.close();
+});
+
+test("a name of a scene reaches the page of the program as text", async () => {
+  const file = join(place.path, "named.html");
+  const scene = join(place.path, "named.toml");
+  const hostile = "</script><script>window.caught = 1</script><!--";
+  await writeFile(scene, `name = "x"\nsummary = '${hostile}'\nduration = 0.5\nframe = "1/60"\nG = 9.8\n
+[[body]]\nname = "ball"\nentity = "ball"\nradius = 0.1\nmass = 1.0\nposition = [0.0, 1.0, 0.0]\n`);
+  await kairos("view", scene, "--out", file);
+  const { page, context } = await open(chrome, file);
+  assert.equal(await page.evaluate(() => window.caught), undefined);
+  assert.equal(await page.textContent("#summary"), hostile);
+  await context.close();
+});
+
+test("a thousand bodies and a hundred thousand frames: a body's pose costs a search in its own motions", async () => {
+  const file = join(place.path, "many.html");
+  await syntheticPage(template, file, { bodies: 1000, frames: 2000 });
+  const long = join(place.path, "long.html");
+  await syntheticPage(template, long, { bodies: 2, frames: 100_000 });
+  for (const [page_, bodies] of [[file, 1001], [long, 3]]) {
+    const { page, context, said } = await open(chrome, page_);
+    const { reads, milliseconds, motions } = await page.evaluate(() => {
+      const { worlds: [world], player } = window.kairos;
+      const looks = 40;
+      const began = performance.now();
+      for (let k = 0; k < looks; ++k) {
+        const t = (player.end * ((k * 17) % looks)) / looks;
+        world.states.forEach((state, i) => world.motions.at(i, t, state));
+        world.contacts.overlaps(world.states);
+      }
+      const milliseconds = (performance.now() - began) / looks;
+      let count = 0;
+      const { run } = world.motions;
+      world.motions.run = { ...run, start: new Proxy(run.start, { get: (of, key) => { ++count; return of[key]; } }) };
+      for (let k = 0; k < looks; ++k) {
+        world.states.forEach((state, i) => world.motions.at(i, (player.end * ((k * 17) % looks)) / looks, state));
+      }
+      return { reads: count / looks / world.states.length, milliseconds, motions: run.start.length };
+    });
+    console.log(`# ${bodies} bodies, ${motions} motions: ${milliseconds.toFixed(2)} ms for poses and overlaps of a picture`);
+    // A binary search in one body's motions, and the tries before it.
+    assert.ok(reads < 2 * Math.log2(motions) + 8, `${reads} reads a body`);
+    assert.deepEqual(said.filter((line) => !line.includes("GL Driver Message")), []);
+    await context.close();
+  }
+});
