@@ -74,23 +74,42 @@ Vector3 centroid(const Polygon& polygon) {
   return polygon[0] + sum;
 }
 
-/// The patch on face `axis` (outward sign * unit vector) of the reference box at the origin.
-/// `half`, `d`, `R`: the other box seen from the reference box.
+/// The face of the other box that looks most against face `axis` (outward sign * unit vector) of
+/// the reference box at the origin. `half`, `d`, `R`: the other box seen from the reference box.
+struct IncidentFace {
+  IncidentFace(int axis, double sign, const Vector3& half, const Vector3& d, const Matrix3& R) {
+    int incident = 0;
+    for (int j = 1; j < 3; ++j) {
+      if (std::abs(R(axis, j)) > std::abs(R(axis, incident))) {
+        incident = j;
+      }
+    }
+    const double side = sign * R(axis, incident) > 0.0 ? -1.0 : 1.0;
+    const int m = (incident + 1) % 3;
+    const int n = (incident + 2) % 3;
+    centre = d + R.col(incident) * (side * half[incident]);
+    u = R.col(m) * half[m];
+    v = R.col(n) * half[n];
+  }
+  [[nodiscard]] Polygon polygon() const {
+    Polygon face;
+    face.add(centre + u + v);
+    face.add(centre - u + v);
+    face.add(centre - u - v);
+    face.add(centre + u - v);
+    return face;
+  }
+
+  Vector3 centre, u, v;
+};
+
+/// The patch on face `axis` of the reference box.
 ContactPatch on_face(const Vector3& reference, int axis, double sign, const Vector3& half,
                      const Vector3& d, const Matrix3& R) {
-  // Incident face: its outward normal looks most against the reference normal.
-  int incident = 0;
-  for (int j = 1; j < 3; ++j) {
-    if (std::abs(R(axis, j)) > std::abs(R(axis, incident))) {
-      incident = j;
-    }
-  }
-  const double side = sign * R(axis, incident) > 0.0 ? -1.0 : 1.0;
-  const int m = (incident + 1) % 3;
-  const int n = (incident + 2) % 3;
-  const Vector3 centre = d + R.col(incident) * (side * half[incident]);
-  const Vector3 u = R.col(m) * half[m];
-  const Vector3 v = R.col(n) * half[n];
+  const IncidentFace incident(axis, sign, half, d, R);
+  const Vector3& centre = incident.centre;
+  const Vector3& u = incident.u;
+  const Vector3& v = incident.v;
   // Roundoff of coordinates that went through a rotation and a clip: 1024 u of the sizes.
   const double margin = 1024.0 * unit_roundoff * (reference.sum() + half.sum());
   // A corner that is lowest alone needs no clipping.
@@ -107,11 +126,7 @@ ContactPatch on_face(const Vector3& reference, int axis, double sign, const Vect
       return {on_a, corner};
     }
   }
-  Polygon face;
-  face.add(centre + u + v);
-  face.add(centre - u + v);
-  face.add(centre - u - v);
-  face.add(centre + u - v);
+  Polygon face = incident.polygon();
   for (const int k : {(axis + 1) % 3, (axis + 2) % 3}) {
     for (const double s : {-1.0, 1.0}) {
       const Polygon smaller = clipped(face, k, s, reference[k]);
@@ -129,6 +144,24 @@ ContactPatch on_face(const Vector3& reference, int axis, double sign, const Vect
   Vector3 on_a = on_b.cwiseMax(-reference).cwiseMin(reference);
   on_a[axis] = sign * reference[axis];
   return {on_a, on_b};
+}
+
+/// The corners of the incident face clipped to the reference face, with their feet on it.
+PatchCorners corners_on_face(const Vector3& reference, int axis, double sign, const Vector3& half,
+                             const Vector3& d, const Matrix3& R) {
+  Polygon face = IncidentFace(axis, sign, half, d, R).polygon();
+  for (const int k : {(axis + 1) % 3, (axis + 2) % 3}) {
+    for (const double s : {-1.0, 1.0}) {
+      face = clipped(face, k, s, reference[k]);
+    }
+  }
+  PatchCorners corners;
+  for (int i = 0; i < face.size; ++i) {
+    Vector3 foot = face[i];
+    foot[axis] = sign * reference[axis];
+    corners.points[static_cast<std::size_t>(corners.size++)] = {foot, face[i]};
+  }
+  return corners;
 }
 
 ContactPatch on_edges(const RelativeBoxes& s, const AxisSeparation& axis) {
@@ -163,6 +196,23 @@ ContactPatch contact_patch(const RelativeBoxes& s, const AxisSeparation& axis) {
     return {s.d_A + s.axes_A * patch.on_b, s.d_A + s.axes_A * patch.on_a};
   }
   return on_edges(s, axis);
+}
+
+PatchCorners patch_corners(const RelativeBoxes& s, const AxisSeparation& axis) {
+  if (axis.axis < 3) {
+    return corners_on_face(s.half_a, axis.axis, axis.sign, s.half_b, s.d_A, s.axes_A);
+  }
+  if (axis.axis < 6) {
+    const Matrix3 R = s.axes_A.transpose();
+    const Vector3 d = -(R * s.d_A);
+    PatchCorners corners = corners_on_face(s.half_b, axis.axis - 3, -axis.sign, s.half_a, d, R);
+    for (int k = 0; k < corners.size; ++k) {
+      ContactPatch& p = corners.points[static_cast<std::size_t>(k)];
+      p = {s.d_A + s.axes_A * p.on_b, s.d_A + s.axes_A * p.on_a};
+    }
+    return corners;
+  }
+  return {1, {on_edges(s, axis)}};
 }
 
 Vector3 lowest_centroid(const Vector3& half, const Vector3& down, double roundoff) {

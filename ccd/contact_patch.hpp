@@ -2,6 +2,8 @@
 
 #include "ccd/relative_boxes.hpp"
 
+#include <array>
+
 namespace kairos::ccd {
 
 /// Where two boxes touch along an axis, in the frame of a: nearest (deepest) points of both.
@@ -16,6 +18,14 @@ struct ContactPatch {
 /// the common area, and a tilted one at its edge or corner. An edge axis: the nearest points of the
 /// two edges.
 [[nodiscard]] ContactPatch contact_patch(const RelativeBoxes& boxes, const AxisSeparation& axis);
+
+/// All corners of the patch along an axis, however high above the reference face: pairs of points
+/// with the same coordinates along it. None where the faces lie beside each other.
+struct PatchCorners {
+  int size = 0;
+  std::array<ContactPatch, 12> points{};
+};
+[[nodiscard]] PatchCorners patch_corners(const RelativeBoxes& boxes, const AxisSeparation& axis);
 
 /// Centroid of the lowest vertices, within roundoff, of a box along a direction: the point where it
 /// touches a plane with that normal. `down`: unit, towards the plane, in the frame of the box.

@@ -2,6 +2,7 @@
 
 #include "ccd/advancement.hpp"
 #include "ccd/closed_form.hpp"
+#include "ccd/contact_manifold.hpp"
 #include "ccd/pair_overlap.hpp"
 #include "ccd/swept_box.hpp"
 
@@ -38,6 +39,11 @@ bool ShapeDetector::overlaps(const Shape& a, const Pose& pose_a, const Shape& b,
 Overlap ShapeDetector::overlap(const Shape& a, const Pose& pose_a, const Shape& b,
                                const Pose& pose_b) const {
   return measure_overlap(a, pose_a, b, pose_b);
+}
+
+ContactManifold ShapeDetector::manifold(const Shape& a, const Pose& pose_a, const Shape& b,
+                                        const Pose& pose_b, double reach) const {
+  return contact_manifold(a, pose_a, b, pose_b, reach);
 }
 
 TimeOfImpact ShapeDetector::time_of_impact(const MovingShape& a, const MovingShape& b,

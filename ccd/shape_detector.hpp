@@ -12,6 +12,8 @@ class ShapeDetector : public ContactDetector {
                               const Pose& pose_b) const final;
   [[nodiscard]] Overlap overlap(const Shape& a, const Pose& pose_a, const Shape& b,
                                 const Pose& pose_b) const final;
+  [[nodiscard]] ContactManifold manifold(const Shape& a, const Pose& pose_a, const Shape& b,
+                                         const Pose& pose_b, double reach) const final;
   [[nodiscard]] TimeOfImpact time_of_impact(const MovingShape& a, const MovingShape& b,
                                             const Window& window, double tolerance) const final;
   [[nodiscard]] TimeOfImpact time_of_separation(const MovingShape& a, const MovingShape& b,

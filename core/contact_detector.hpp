@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/contact_manifold.hpp"
 #include "core/motion.hpp"
 #include "core/shape.hpp"
 #include "core/time_of_impact.hpp"
@@ -43,6 +44,10 @@ class ContactDetector {
   /// The same with signed gap, normal (a to b) and the centroid of the contact patch.
   [[nodiscard]] virtual Overlap overlap(const Shape& a, const Pose& pose_a, const Shape& b,
                                         const Pose& pose_b) const = 0;
+  /// The patch in which they touch: its points whose gap is at most `reach`, m (none where they are
+  /// further apart). The default knows only the centroid.
+  [[nodiscard]] virtual ContactManifold manifold(const Shape& a, const Pose& pose_a, const Shape& b,
+                                                 const Pose& pose_b, double reach) const;
   /// When do they first touch within the window? `tolerance` in m; 0 takes the default:
   /// 1e-9 of the smaller extent plus the roundoff of the coordinates.
   [[nodiscard]] virtual TimeOfImpact time_of_impact(const MovingShape& a, const MovingShape& b,
