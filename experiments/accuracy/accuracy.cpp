@@ -3,9 +3,9 @@
 #include "experiments/accuracy/query_file.hpp"
 #include "experiments/accuracy/random_query.hpp"
 #include "experiments/accuracy/truth.hpp"
-#include "experiments/output/csv_row.hpp"
 #include "experiments/output/output_folder.hpp"
 #include "experiments/parallel_for.hpp"
+#include "simulation/output/csv_row.hpp"
 #include "simulation/registry.hpp"
 
 #include <fmt/format.h>

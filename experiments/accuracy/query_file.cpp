@@ -1,6 +1,6 @@
 #include "experiments/accuracy/query_file.hpp"
 
-#include "experiments/output/csv_row.hpp"
+#include "simulation/output/csv_row.hpp"
 
 namespace kairos::experiments {
 namespace {

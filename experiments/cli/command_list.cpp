@@ -4,9 +4,9 @@
 #include "experiments/cli/commands.hpp"
 #include "experiments/data_folders.hpp"
 #include "experiments/metrics/metrics.hpp"
-#include "experiments/output/csv_row.hpp"
 #include "experiments/sweeps/sweep_spec.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
+#include "simulation/output/csv_row.hpp"
 #include "simulation/registry.hpp"
 #include "simulation/scene_library.hpp"
 

@@ -1,8 +1,7 @@
 #pragma once
 
-#include "core/recorder.hpp"
-#include "experiments/output/csv_row.hpp"
 #include "experiments/output/output_folder.hpp"
+#include "simulation/output/run_tables.hpp"
 
 #include <array>
 #include <string_view>
@@ -11,14 +10,10 @@
 
 namespace kairos::experiments {
 
-/// Writes a run while it goes on, in constant memory:
-///   trajectory.csv  every body in every drawn frame: pose and velocities, world frame, SI units
-///   events.csv      every event, with its contact and the states before and after
-///   energy.csv      the energy ledger at every drawn frame, J
-class RunFiles : public Recorder {
+/// The tables of a run as files, written while it goes on.
+class RunFiles : public RunTables {
  public:
-  RunFiles(AtomicFile& trajectory, AtomicFile& events, AtomicFile& energy)
-      : trajectory_(trajectory), events_(events), energy_(energy) {}
+  RunFiles(AtomicFile& trajectory, AtomicFile& events, AtomicFile& energy);
 
   static constexpr std::array<std::string_view, 3> names{"trajectory.csv", "events.csv",
                                                          "energy.csv"};
@@ -27,20 +22,13 @@ class RunFiles : public Recorder {
   /// keeps the files of its run beside the world, not in it, so that neither is ever in memory.
   void go_on_from(std::vector<FilePart> begun) { begun_ = std::move(begun); }
 
-  void begin(const Model& model) override;
-  void frame(const Frame& frame) override;
-  void event(const Event& event) override;
   bool persist(Archive& archive) override;
 
  private:
-  void write_energy(const Frame& frame);
-
   AtomicFile& trajectory_;
   AtomicFile& events_;
   AtomicFile& energy_;
   std::vector<FilePart> begun_;
-  CsvRow row_;
-  const Model* model_ = nullptr;
 };
 
 /// What the folder of a run looks like: `summary.json` seals it.

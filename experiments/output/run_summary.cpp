@@ -1,8 +1,8 @@
 #include "experiments/output/run_summary.hpp"
 
 #include "core/reading/csv.hpp"
-#include "experiments/output/json_writer.hpp"
 #include "simulation/option.hpp"
+#include "simulation/output/json_writer.hpp"
 #include "simulation/registry.hpp"
 #include "simulation/version.hpp"
 

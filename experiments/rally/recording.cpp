@@ -1,8 +1,8 @@
 #include "experiments/rally/recording.hpp"
 
 #include "core/random.hpp"
-#include "experiments/output/csv_row.hpp"
 #include "experiments/rally/hand_path.hpp"
+#include "simulation/output/csv_row.hpp"
 
 #include <algorithm>
 #include <cmath>

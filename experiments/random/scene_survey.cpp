@@ -1,9 +1,9 @@
 #include "experiments/random/scene_survey.hpp"
 
 #include "core/archive.hpp"
-#include "experiments/output/json_writer.hpp"
 #include "experiments/output/record_journal.hpp"
 #include "experiments/parallel_for.hpp"
+#include "simulation/output/json_writer.hpp"
 #include "simulation/version.hpp"
 
 #include <fmt/format.h>

@@ -181,16 +181,6 @@ std::size_t Footage::at(double time) const {
   return after == pictures.begin() ? 0 : static_cast<std::size_t>(after - pictures.begin()) - 1;
 }
 
-std::vector<Actor> actors_of(const Model& model) {
-  std::vector<Actor> actors;
-  for (BodyIndex i = 0; i < model.size(); ++i) {
-    const Body& body = model.body(i);
-    actors.push_back({body.name, std::string(body.entity->kind()), body.shape, model.shape(i),
-                      model.is_free(i), model.is_field(i), model.mobility(i) != Mobility::fixed});
-  }
-  return actors;
-}
-
 void FootageRecorder::begin(const Model& model) {
   footage_ = {};
   footage_.title = model.scene().name;

@@ -2,22 +2,12 @@
 
 #include "core/model.hpp"
 #include "core/recorder.hpp"
+#include "simulation/view/actor.hpp"
 
 #include <string>
 #include <vector>
 
 namespace kairos::experiments {
-
-/// What a picture needs to know of a body.
-struct Actor {
-  std::string name;
-  std::string entity;
-  Shape shape;           ///< as it is seen
-  Shape collides_as;     ///< its box where it collides as one
-  bool is_free = false;  ///< moved by forces and impacts
-  bool is_field = false;
-  bool moves = false;  ///< free or driven
-};
 
 /// A run as a person saw it: bodies, and where they were in each drawn frame.
 struct Footage {
@@ -33,8 +23,6 @@ struct Footage {
   /// Index of the last picture drawn at `time` or before; the first one before that. Not empty.
   [[nodiscard]] std::size_t at(double time) const;
 };
-
-[[nodiscard]] std::vector<Actor> actors_of(const Model& model);
 
 /// Keeps the drawn frames of a run.
 class FootageRecorder : public Recorder {

@@ -1,8 +1,8 @@
 #include "experiments/toi/toi_stream.hpp"
 
-#include "experiments/output/csv_row.hpp"
 #include "experiments/toi/row_stream.hpp"
 #include "experiments/toi/toi_query.hpp"
+#include "simulation/output/csv_row.hpp"
 
 #include <cmath>
 #include <string_view>

@@ -1,8 +1,8 @@
 #include "experiments/vfee/vfee_stream.hpp"
 
 #include "core/error.hpp"
-#include "experiments/output/csv_row.hpp"
 #include "experiments/vfee/vfee_query.hpp"
+#include "simulation/output/csv_row.hpp"
 
 #include <atomic>
 #include <memory>

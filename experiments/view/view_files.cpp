@@ -4,7 +4,8 @@
 #include "core/impact_law.hpp"
 #include "core/reading/document.hpp"
 #include "experiments/output/table_rows.hpp"
-#include "experiments/view/straight_motion.hpp"
+#include "experiments/render/footage.hpp"
+#include "simulation/view/straight_motion.hpp"
 
 #include <algorithm>
 #include <array>

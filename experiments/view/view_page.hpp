@@ -1,6 +1,6 @@
 #pragma once
 
-#include "experiments/view/view_run.hpp"
+#include "simulation/view/view_run.hpp"
 
 #include <span>
 #include <string>

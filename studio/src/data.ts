@@ -46,6 +46,7 @@ export interface Run {
   frames: Float64Array;
   energy: { name: string; values: Float64Array }[];
   events: Events;
+  begin: number;
   end: number;
 }
 
@@ -65,7 +66,7 @@ interface Entry {
   length: number;
 }
 
-interface RunText {
+export interface RunText {
   title: string;
   summary: string;
   method: string;
@@ -98,8 +99,8 @@ export function fromBase64(text: string): ArrayBuffer {
   return bytes.buffer;
 }
 
-function readRun(text: RunText, block: string): Run {
-  const buffer = fromBase64(block);
+/** A run from its names and texts, and the block of its numbers. */
+export function readRun(text: RunText, buffer: ArrayBuffer): Run {
   const find = (name: string): Entry => {
     const entry = text.arrays[name];
     if (!entry) throw new Error(`the page holds no ${name}`);
@@ -133,6 +134,7 @@ function readRun(text: RunText, block: string): Run {
       approach: f64("event.approach"),
       vectors: f64("event.vectors"),
     },
+    begin: frames[0] ?? 0,
     end: frames.length > 0 ? frames[frames.length - 1] : 0,
   };
 }
@@ -144,7 +146,7 @@ export function readPage(): Run[] {
   const page = JSON.parse(json) as { runs: Record<string, RunText> };
   return Object.values(page.runs).map((text, i) => {
     const block = document.getElementById(`kairos-numbers-${i}`);
-    const run = readRun(text, block?.textContent ?? "");
+    const run = readRun(text, fromBase64(block?.textContent ?? ""));
     block?.remove();
     return run;
   });

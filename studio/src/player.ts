@@ -6,13 +6,21 @@ export class Player {
   time = 0;
   speed = 1;
   playing = false;
-  readonly end: number;
-  readonly frames: Float64Array;
+  begin = 0;
+  end = 0;
+  frames: Float64Array = new Float64Array();
   /** Instants of the events of all runs, each once. */
-  readonly instants: Float64Array;
+  instants: Float64Array = new Float64Array();
   private last = 0;
 
   constructor(runs: Run[], private readonly changed: () => void) {
+    this.load(runs);
+    this.time = this.begin;
+  }
+
+  /** Other runs: time stays where they know it. */
+  load(runs: Run[]): void {
+    this.begin = Math.min(...runs.map((run) => run.frames[0] ?? 0));
     this.end = Math.max(...runs.map((run) => run.end));
     this.frames = runs.reduce((longest, run) => (run.end > longest.end ? run : longest)).frames;
     const all = new Float64Array(runs.reduce((n, run) => n + run.events.time.length, 0));
@@ -22,16 +30,17 @@ export class Player {
       at += run.events.time.length;
     }
     this.instants = all.sort().filter((t, i) => i === 0 || t !== all[i - 1]);
+    this.time = Math.min(Math.max(this.time, this.begin), this.end);
   }
 
   seek(t: number): void {
-    this.time = Math.min(Math.max(t, 0), this.end);
+    this.time = Math.min(Math.max(t, this.begin), this.end);
     this.changed();
   }
 
   play(on: boolean): void {
     if (on === this.playing) return;
-    if (on && this.time >= this.end) this.time = 0;
+    if (on && this.time >= this.end) this.time = this.begin;
     this.playing = on;
     this.last = performance.now();
     this.changed();

@@ -171,9 +171,12 @@ export class Plots {
   private readonly bodyPlots: Plot[];
   private range: [number, number];
   private job = 0;
-  private readonly names: string[];
+  private names: string[];
 
-  constructor(place: HTMLElement, private readonly worlds: World[], private readonly end: number,
+  /** Where the whole run begins, s. */
+  begin = 0;
+
+  constructor(place: HTMLElement, private worlds: World[], private end: number,
               private readonly colour: Palette, seek: (t: number) => void,
               private readonly zoomed: (whole: boolean) => void) {
     this.range = [0, end];
@@ -186,10 +189,21 @@ export class Plots {
     place.append(this.energy.figure, ...this.bodyPlots.map((plot) => plot.figure));
   }
 
+  /** Other runs; a stretch that was marked stays, where they have it. */
+  load(worlds: World[], begin: number, end: number): void {
+    const whole = this.range[0] === this.begin && this.range[1] === this.end;
+    this.worlds = worlds;
+    this.begin = begin;
+    this.end = end;
+    this.names = ["kinetic + potential", ...new Set(worlds.flatMap((w) => w.run.energy.map((e) => e.name)))];
+    this.range = whole || this.range[0] >= end ? [begin, end] : [Math.max(begin, this.range[0]), Math.min(end, this.range[1])];
+    this.zoomed(this.range[0] === begin && this.range[1] === end);
+  }
+
   /** NaN: the whole run. */
   setRange(from: number, to: number): void {
     const whole = !(to > from);
-    this.range = whole ? [0, this.end] : [Math.max(0, from), Math.min(this.end, to)];
+    this.range = whole ? [this.begin, this.end] : [Math.max(this.begin, from), Math.min(this.end, to)];
     this.zoomed(whole);
     this.draw(this.body, this.other);
   }

@@ -11,10 +11,10 @@ export class Stage {
   readonly camera = new PerspectiveCamera(40, 1, 0.01, 1000);
   readonly controls: OrbitControls;
   following = false;
-  private readonly origins: Vector3[];
+  private origins: Vector3[];
   private readonly state = newState();
 
-  constructor(readonly canvas: HTMLCanvasElement, readonly worlds: World[], changed: () => void) {
+  constructor(readonly canvas: HTMLCanvasElement, public worlds: World[], changed: () => void) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true });
     this.renderer.setScissorTest(true);
     this.renderer.localClippingEnabled = true;
@@ -38,6 +38,12 @@ export class Stage {
       radius = grown;
     }
     return { centre, radius };
+  }
+
+  /** Other worlds, seen as these were. */
+  load(worlds: World[]): void {
+    this.worlds = worlds;
+    this.origins = worlds.map(() => new Vector3());
   }
 
   /** All of the scene, seen from `direction`. */

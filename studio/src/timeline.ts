@@ -5,7 +5,6 @@ import type { Player } from "./player";
 export class Timeline {
   constructor(private readonly ticks: HTMLCanvasElement, private readonly scrubber: HTMLInputElement,
               private readonly player: Player, private readonly colour: Palette) {
-    scrubber.max = String(player.end);
     scrubber.addEventListener("input", () => {
       player.play(false);
       player.seek(Number(scrubber.value));
@@ -15,6 +14,8 @@ export class Timeline {
   /** Each pixel at most once: 1e5 events cost no more than 1e3. The thumb's half width is inset. */
   draw(): void {
     const { ticks, player } = this;
+    this.scrubber.min = String(player.begin);
+    this.scrubber.max = String(player.end);
     const ratio = window.devicePixelRatio;
     const width = Math.max(1, Math.round(ticks.clientWidth * ratio));
     const height = Math.max(1, Math.round(ticks.clientHeight * ratio));
@@ -25,7 +26,7 @@ export class Timeline {
     context.fillStyle = this.colour.impulse;
     let last = -Infinity;
     for (const t of player.instants) {
-      const x = Math.round(inset + (t / Math.max(player.end, 1e-300)) * (width - 2 * inset));
+      const x = Math.round(inset + ((t - player.begin) / Math.max(player.end - player.begin, 1e-300)) * (width - 2 * inset));
       if (x - last < ratio) continue;
       last = x;
       context.fillRect(x, 2 * ratio, Math.max(1, ratio), height - 2 * ratio);

@@ -117,14 +117,14 @@ export class World {
     const moving = this.movers.filter((i) => Number.isFinite(boundingRadius(run.bodies[i].shape)));
     const looks = Math.max(2, Math.min(200, Math.floor(40000 / Math.max(1, moving.length))));
     const samples = (bodies: number[], take: (i: number, t: number) => void) => {
-      for (const i of bodies) for (let k = 0; k <= looks; ++k) take(i, (run.end * k) / looks);
+      for (const i of bodies) for (let k = 0; k <= looks; ++k) take(i, run.begin + ((run.end - run.begin) * k) / looks);
     };
     const kept = this.stayers(samples);
     samples(moving, (i, t) => { if (kept(i, t)) include(i, t, boundingRadius(run.bodies[i].shape)); });
     const reach = moving.length > 0 ? high.distanceTo(low) : Infinity;
     run.bodies.forEach((body, i) => {
       const r = boundingRadius(body.shape);
-      if (body.moves === "fixed" && r < 2 * reach) include(i, 0, 0.8 * r);
+      if (body.moves === "fixed" && r < 2 * reach) include(i, run.begin, 0.8 * r);
     });
     if (!(low.x <= high.x)) { low.setScalar(-1); high.setScalar(1); }
     this.centre.addVectors(low, high).multiplyScalar(0.5);
@@ -134,7 +134,8 @@ export class World {
   /** Which moments count for what is seen: the start, and those near the room that fixed and driven bodies
    *  make, where there is one. A ball that was hit out of it is not followed. */
   private stayers(samples: (bodies: number[], take: (i: number, t: number) => void) => void): (i: number, t: number) => boolean {
-    const { bodies } = this.run;
+    const { run } = this;
+    const { bodies } = run;
     const room = bodies.map((_, i) => i)
       .filter((i) => bodies[i].moves !== "free" && Number.isFinite(boundingRadius(bodies[i].shape)));
     const low = new Vector3(Infinity, Infinity, Infinity);
@@ -151,7 +152,7 @@ export class World {
     const limit = 0.6 * high.distanceTo(low);
     return (i, t) => {
       this.motions.at(i, t, state);
-      return t === 0 || this.s.set(state.px, state.py, state.pz).distanceTo(centre) <= limit;
+      return t === run.begin || this.s.set(state.px, state.py, state.pz).distanceTo(centre) <= limit;
     };
   }
 
@@ -231,6 +232,16 @@ export class World {
     wires.frustumCulled = false;
     this.scene.add(wires);
     return wires;
+  }
+
+  /** Frees what the graphics card holds. */
+  dispose(): void {
+    this.scene.traverse((object) => {
+      const { geometry, material } = object as Partial<Mesh<BufferGeometry, Material | Material[]>>;
+      geometry?.dispose();
+      for (const each of material === undefined ? [] : [material].flat()) each.dispose();
+      if (object instanceof InstancedMesh) object.dispose();
+    });
   }
 
   /** Poses of all bodies at t, m from `origin`. */
@@ -313,7 +324,7 @@ export class World {
       const state = newState();
       for (const i of of) {
         const colour = this.tone(run.bodies[i], i);
-        const from = Math.max(0, t - look.trail);
+        const from = Math.max(this.run.begin, t - look.trail);
         let x = 0, y = 0, z = 0;
         for (let k = 0; k <= trailPoints; ++k) {
           this.motions.at(i, from + ((t - from) * k) / trailPoints, state);

@@ -1,11 +1,12 @@
 #pragma once
 
 #include "core/recorder.hpp"
-#include "experiments/view/view_run.hpp"
+#include "simulation/view/view_run.hpp"
 
 #include <cstddef>
 
-namespace kairos::experiments {
+namespace kairos {
+inline namespace simulation {
 
 /// Collects what a page needs of a run: motions instead of frames. A frame is compared with the
 /// motions; what those do not tell (a driven body of a frame-based scheme, a ball in a hand, a body
@@ -14,7 +15,7 @@ class ViewRecorder : public Recorder {
  public:
   void begin(const Model& model) override;
   [[nodiscard]] bool wants_motions() const override { return true; }
-  /// Throws `RunError` where the run becomes larger than a page can be.
+  /// Throws `std::length_error` where the run becomes larger than a page can be.
   void frame(const Frame& frame) override;
   void motion(BodyIndex body, const Motion& motion) override;
   void event(const Event& event) override;
@@ -34,4 +35,5 @@ class ViewRecorder : public Recorder {
   std::size_t motions_ = 0;
 };
 
-}  // namespace kairos::experiments
+}  // namespace simulation
+}  // namespace kairos

@@ -1,9 +1,10 @@
-#include "experiments/view/straight_motion.hpp"
+#include "simulation/view/straight_motion.hpp"
 
 #include <cmath>
 #include <numbers>
 
-namespace kairos::experiments {
+namespace kairos {
+inline namespace simulation {
 namespace {
 
 Vector4 coefficients(const Quaternion& q) { return {q.w(), q.x(), q.y(), q.z()}; }
@@ -70,4 +71,5 @@ Motion smooth_motion(Instant start, double duration, const BodyState& from, cons
   return motion;
 }
 
-}  // namespace kairos::experiments
+}  // namespace simulation
+}  // namespace kairos

@@ -1,14 +1,15 @@
-#include "experiments/view/view_recorder.hpp"
+#include "simulation/view/view_recorder.hpp"
 
 #include "core/impact_law.hpp"
-#include "experiments/run_error.hpp"
-#include "experiments/view/straight_motion.hpp"
+#include "simulation/view/straight_motion.hpp"
 
 #include <fmt/format.h>
 
+#include <stdexcept>
 #include <utility>
 
-namespace kairos::experiments {
+namespace kairos {
+inline namespace simulation {
 namespace {
 
 /// Rounding of a path that is handed on from frame to frame, m; see `BodyTrack`.
@@ -117,7 +118,7 @@ void ViewRecorder::check_size() const {
   }
   const std::size_t bytes = 8 * numbers + 100 * run_.events.size();
   if (bytes > most_bytes) {
-    throw RunError(fmt::format(
+    throw std::length_error(fmt::format(
         "{}: at t = {} s the page would hold more than {} MB, the most that browsers open; a "
         "shorter --duration fits, or event-driven, which needs one motion an impact",
         run_.title, drawn_at_.seconds, most_bytes / 1'000'000));
@@ -131,4 +132,5 @@ ViewRun ViewRecorder::finish() && {
   return std::move(run_);
 }
 
-}  // namespace kairos::experiments
+}  // namespace simulation
+}  // namespace kairos

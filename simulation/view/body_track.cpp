@@ -1,10 +1,11 @@
-#include "experiments/view/body_track.hpp"
+#include "simulation/view/body_track.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace kairos::experiments {
+namespace kairos {
+inline namespace simulation {
 namespace {
 
 /// m; for orientations of the quaternion's components. Far below what a page can show, far above
@@ -155,4 +156,5 @@ void BodyTrack::drop_last() {
   duration.pop_back();
 }
 
-}  // namespace kairos::experiments
+}  // namespace simulation
+}  // namespace kairos

@@ -1,4 +1,4 @@
-#include "experiments/output/csv_row.hpp"
+#include "simulation/output/csv_row.hpp"
 
 #include <fmt/compile.h>
 #include <fmt/format.h>
@@ -6,7 +6,8 @@
 #include <cmath>
 #include <iterator>
 
-namespace kairos::experiments {
+namespace kairos {
+inline namespace simulation {
 
 void CsvRow::separate() {
   if (finished_) {
@@ -65,4 +66,5 @@ std::string_view CsvRow::finish() {
   return line_;
 }
 
-}  // namespace kairos::experiments
+}  // namespace simulation
+}  // namespace kairos

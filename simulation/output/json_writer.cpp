@@ -1,11 +1,12 @@
-#include "experiments/output/json_writer.hpp"
+#include "simulation/output/json_writer.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <utility>
 
-namespace kairos::experiments {
+namespace kairos {
+inline namespace simulation {
 namespace {
 
 std::string quoted(std::string_view text) {
@@ -78,4 +79,5 @@ std::string JsonWriter::finish() {
   return std::move(out_) + '\n';
 }
 
-}  // namespace kairos::experiments
+}  // namespace simulation
+}  // namespace kairos

@@ -2,14 +2,15 @@
 
 #include "core/entity.hpp"
 #include "core/event.hpp"
-#include "experiments/render/footage.hpp"
-#include "experiments/view/body_track.hpp"
+#include "simulation/view/actor.hpp"
+#include "simulation/view/body_track.hpp"
 
 #include <string>
 #include <utility>
 #include <vector>
 
-namespace kairos::experiments {
+namespace kairos {
+inline namespace simulation {
 
 /// An event as a page shows it.
 struct ViewEvent {
@@ -43,4 +44,5 @@ struct ViewRun {
   std::vector<ViewEvent> events;
 };
 
-}  // namespace kairos::experiments
+}  // namespace simulation
+}  // namespace kairos

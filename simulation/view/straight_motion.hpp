@@ -3,7 +3,8 @@
 #include "core/motion.hpp"
 #include "core/state.hpp"
 
-namespace kairos::experiments {
+namespace kairos {
+inline namespace simulation {
 
 /// Between two states that are all that is known: a straight line at constant speed, a turn at
 /// constant rate; velocities change evenly. `duration` > 0, s.
@@ -14,4 +15,5 @@ namespace kairos::experiments {
 [[nodiscard]] Motion smooth_motion(Instant start, double duration, const BodyState& from,
                                    const BodyState& to);
 
-}  // namespace kairos::experiments
+}  // namespace simulation
+}  // namespace kairos

@@ -4,7 +4,8 @@
 #include <string>
 #include <string_view>
 
-namespace kairos::experiments {
+namespace kairos {
+inline namespace simulation {
 
 /// Builds a JSON text with one member a line. NaN and infinity, which JSON has not, become null.
 class JsonWriter {
@@ -29,4 +30,5 @@ class JsonWriter {
   bool first_ = true;  ///< of its object
 };
 
-}  // namespace kairos::experiments
+}  // namespace simulation
+}  // namespace kairos

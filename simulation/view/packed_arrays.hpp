@@ -8,7 +8,8 @@
 #include <string_view>
 #include <vector>
 
-namespace kairos::experiments {
+namespace kairos {
+inline namespace simulation {
 
 /// Named arrays of numbers in one block of bytes, little-endian, each aligned to 8 bytes, so that a
 /// page reads them as typed arrays without copying.
@@ -49,4 +50,5 @@ class PackedArrays {
 /// RFC 4648, padded: no character of it means anything in HTML.
 [[nodiscard]] std::string base64(std::span<const std::byte> bytes);
 
-}  // namespace kairos::experiments
+}  // namespace simulation
+}  // namespace kairos

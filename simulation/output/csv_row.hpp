@@ -6,7 +6,8 @@
 #include <string>
 #include <string_view>
 
-namespace kairos::experiments {
+namespace kairos {
+inline namespace simulation {
 
 /// One line of a CSV file, built in a buffer that is used again and again. Numbers are written in
 /// the shortest form that reads back the same, NaN and infinity as an empty field; text is quoted
@@ -32,4 +33,5 @@ class CsvRow {
   bool finished_ = true;
 };
 
-}  // namespace kairos::experiments
+}  // namespace simulation
+}  // namespace kairos

@@ -8,7 +8,8 @@
 #include <optional>
 #include <vector>
 
-namespace kairos::experiments {
+namespace kairos {
+inline namespace simulation {
 
 /// The motions of one body through a run, as numbers that a page evaluates.
 ///
@@ -53,4 +54,5 @@ class BodyTrack {
   std::optional<Motion> last_;
 };
 
-}  // namespace kairos::experiments
+}  // namespace simulation
+}  // namespace kairos

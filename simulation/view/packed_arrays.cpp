@@ -1,6 +1,7 @@
-#include "experiments/view/packed_arrays.hpp"
+#include "simulation/view/packed_arrays.hpp"
 
-namespace kairos::experiments {
+namespace kairos {
+inline namespace simulation {
 
 std::string base64(std::span<const std::byte> bytes) {
   constexpr std::string_view alphabet =
@@ -20,4 +21,5 @@ std::string base64(std::span<const std::byte> bytes) {
   return text;
 }
 
-}  // namespace kairos::experiments
+}  // namespace simulation
+}  // namespace kairos
