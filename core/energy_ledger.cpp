@@ -8,7 +8,8 @@ inline namespace core {
 std::string_view to_string(EnergyLine line) {
   constexpr std::array<std::string_view, energy_line_count> names{
       "field_work",  "driven_work",         "restitution_loss",  "truncation",
-      "late_impact", "position_correction", "conveyor_and_hand", "roundoff"};
+      "late_impact", "position_correction", "conveyor_and_hand", "roundoff",
+      "friction",    "impact_friction",     "zeno_completion",   "projection"};
   return names[static_cast<std::size_t>(line)];
 }
 

@@ -21,8 +21,12 @@ enum class EnergyLine : std::size_t {
   conveyor_and_hand,    ///< belts and hands
   roundoff,             ///< steps as computed minus steps in double-double, impacts as computed
                         ///< minus impacts in extended precision; on request
+  friction,             ///< between impacts: minus the integral of mu N |v_t| dt; <= 0
+  impact_friction,      ///< tangential impulses p_t of impacts: sum of p_t.(u- + u+)/2, u relative
+  zeno_completion,      ///< the impacts left of an accumulation that is completed: p.(u- + u+)/2
+  projection,           ///< impulses that put velocities back to constraints: p.(u- + u+)/2
 };
-inline constexpr std::size_t energy_line_count = 8;
+inline constexpr std::size_t energy_line_count = 12;
 [[nodiscard]] std::string_view to_string(EnergyLine line);
 
 /// Sum that does not lose its small terms [Neumaier1974].

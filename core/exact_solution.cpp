@@ -42,6 +42,14 @@ std::unique_ptr<const ExactMotion> solve_exactly(const Scene& scene) {
     throw InputError(scene.path, 0, "exact.solution",
                      "\"" + scene.exact->solution + "\" does not exist");
   }
+  bool rough = false;
+  for (const Body& body : scene.bodies) {
+    rough = rough || body.friction > 0.0;
+  }
+  if (rough) {
+    throw InputError(scene.path, 0, "exact.solution",
+                     "\"" + scene.exact->solution + "\" holds without friction only");
+  }
   return type->solve(scene);
 }
 

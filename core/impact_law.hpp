@@ -12,6 +12,8 @@ struct Contact {
   Vector3 point = Vector3::Zero();   ///< centroid of the contact patch, world frame, m
   Vector3 normal = Vector3::Zero();  ///< unit, from a to b, world frame
   double gap = 0.0;                  ///< m; negative: penetration
+  double restitution = 1.0;          ///< of the pair, as the scene combines it
+  double friction = 0.0;             ///< Coulomb's, of the pair; may be infinite
 };
 
 /// One of the two bodies, as a law may see and change it.

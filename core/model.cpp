@@ -89,6 +89,7 @@ Model::Model(Scene scene, const ModelOptions& options)
   check_scene(scene_);
   choose_bodies();
   choose_forces();
+  choose_friction();
   choose_rotation();
   choose_pairs();
   choose_islands();
@@ -162,14 +163,45 @@ void Model::choose_forces() {
   decide(tally.decisions("forces"));
 }
 
+/// Whose surfaces rub against each other.
+void Model::choose_friction() {
+  rubs_.assign(size(), false);
+  const auto rough = [this](BodyIndex i) { return body(i).friction > 0.0 && !is_field(i); };
+  std::size_t rough_bodies = 0;
+  for (BodyIndex i = 0; i < size(); ++i) {
+    rough_bodies += rough(i) ? 1 : 0;
+  }
+  Tally tally;
+  for (BodyIndex i = 0; i < size(); ++i) {
+    rubs_[i] = is_free(i) && rough(i) && rough_bodies > 1;
+    has_friction_ = has_friction_ || rubs_[i];
+    if (rubs_[i] && !entity(i).rotates()) {
+      tally.add("is rubbed and does not turn", body(i).name,
+                fmt::format("a {} does not turn: friction takes its velocity and gives no spin; "
+                            "the entity \"body\" rolls",
+                            entity(i).kind()));
+    }
+  }
+  decide(tally.decisions("friction"));
+  if (has_friction_) {
+    decide({{"friction",
+             fmt::format("Coulomb's, isotropic; of a pair the {} of both coefficients",
+                         to_string(scene_.friction_combine)),
+             "the scene says so; 0 for a body of which nothing is said, and then for its pairs"},
+            {"friction", "spinning friction is left out",
+             "a contact resists sliding at its points, not turning about its normal: a ball that "
+             "pivots on one point does so for ever"}});
+  }
+}
+
 /// Whose orientation is integrated at all.
 void Model::choose_rotation() {
   Tally tally;
   for (BodyIndex i = 0; i < size(); ++i) {
     const Body& b = body(i);
     const bool could = is_free(i) && (b.entity->rotates() || is_sphere(shape(i)));
-    const bool matters =
-        is_free(i) && b.entity->rotates() && (!is_sphere(shape(i)) || turned_by_force_[i]);
+    const bool matters = is_free(i) && b.entity->rotates() &&
+                         (!is_sphere(shape(i)) || turned_by_force_[i] || rubs_[i]);
     rotates_.push_back(options_.leave_out_orientation ? matters : could);
     inertia_.push_back({is_free(i) ? b.mass : -1.0, is_free(i) ? b.inertia : Vector3::Zero().eval(),
                         rotates_[i], is_free(i) ? bounding_radius(shape(i)) : 0.0});
@@ -181,9 +213,10 @@ void Model::choose_rotation() {
               : fmt::format("a {} does not turn", b.entity->kind()));
     } else if (is_free(i)) {
       tally.add("orientation is kept", b.name,
-                turned_by_force_[i] ? "a force turns it or depends on how it turns"
-                : matters           ? "impacts can turn it"
-                                    : "leaving it out is switched off");
+                turned_by_force_[i]               ? "a force turns it or depends on how it turns"
+                : rubs_[i] && is_sphere(shape(i)) ? "friction turns it"
+                : matters                         ? "impacts can turn it"
+                                                  : "leaving it out is switched off");
     }
   }
   decide(tally.decisions("rotation"));

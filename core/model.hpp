@@ -56,6 +56,17 @@ class Model {
   /// Gravity on body i and what else is uniform (buoyancy), N; 0 for bodies that are not free.
   [[nodiscard]] const Vector3& gravity_force(BodyIndex i) const { return gravity_force_[i]; }
 
+  /// Restitution of the pair as the scene combines it, from 0 to 1.
+  [[nodiscard]] double restitution(BodyIndex a, BodyIndex b) const {
+    return scene_.restitution(body(a), body(b));
+  }
+  /// Coulomb's coefficient of friction of the pair, as the scene combines it: >= 0 or infinite.
+  [[nodiscard]] double friction(BodyIndex a, BodyIndex b) const {
+    return scene_.friction(body(a), body(b));
+  }
+  /// Whether some pair that can meet has friction.
+  [[nodiscard]] bool has_friction() const { return has_friction_; }
+
   /// Pairs to test, in the order of creation: those that can ever interact; with `prune_pairs` off
   /// all pairs, of which still only those do anything to each other that `interacts`.
   [[nodiscard]] const BodyPairs& pairs() const { return pairs_; }
@@ -98,6 +109,7 @@ class Model {
  private:
   void choose_bodies();
   void choose_forces();
+  void choose_friction();
   void choose_rotation();
   void choose_pairs();
   [[nodiscard]] Decision choose_broad_phase();
@@ -116,6 +128,8 @@ class Model {
   std::vector<BodyInertia> inertia_;
   std::vector<Vector3> gravity_force_;
   std::vector<bool> turned_by_force_;  ///< a force involves its rotation
+  std::vector<bool> rubs_;             ///< has friction with something that it can meet
+  bool has_friction_ = false;
   std::vector<PairRole> roles_;
   BodyPairs pairs_;
   std::vector<Island> islands_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/combine.hpp"
 #include "core/drive.hpp"
 #include "core/entity.hpp"
 #include "core/force.hpp"
@@ -31,7 +32,9 @@ struct Body {
   double mass = -1.0;                 ///< kg; -1: infinite
   Vector3 inertia = Vector3::Zero();  ///< principal moments, body axes, kg m^2
   BodyState initial;                  ///< at t = 0
-  double restitution = 1.0;           ///< of a pair: the product of both
+  double restitution = 1.0;           ///< of a pair: see `Scene::restitution_combine`
+  double friction = 0.0;              ///< Coulomb's, >= 0 or infinite (rough); of a pair: see
+                                      ///< `Scene::friction_combine`
   double G = 9.8;                     ///< m/s^2 or N, see `GravityMode`
   CollisionType collision_type = CollisionType::square;
   Vector3 normal_B = Vector3::UnitY();  ///< of the reflecting face (5.5), body frame, unit
@@ -66,9 +69,20 @@ struct Scene {
   double duration = 10.0;  ///< s
   FrameTimes frames;
   GravityMode gravity = GravityMode::acceleration;
+  Combine restitution_combine = Combine::product;
+  Combine friction_combine = Combine::geometric_mean;
   std::vector<Body> bodies;  ///< in the order of creation
   std::vector<SceneForce> forces;
   std::optional<ExactSolution> exact;
+
+  /// Restitution of a pair of its bodies, from 0 to 1.
+  [[nodiscard]] double restitution(const Body& a, const Body& b) const {
+    return combine(restitution_combine, a.restitution, b.restitution);
+  }
+  /// Coulomb's coefficient of friction of a pair, >= 0 or infinite.
+  [[nodiscard]] double friction(const Body& a, const Body& b) const {
+    return combine(friction_combine, a.friction, b.friction);
+  }
 };
 
 }  // namespace core

@@ -24,6 +24,7 @@ class BodyCheck {
     need(std::isfinite(body_.G), "G", "must be finite");
     need(body_.restitution >= 0.0 && body_.restitution <= 1.0, "restitution",
          "must be from 0 to 1");
+    need(body_.friction >= 0.0, "friction", "must be >= 0, or infinite");
     need(body_.scale > 0.0 && std::isfinite(body_.scale), "scale", "must be > 0 and finite");
     need(is_unit(body_.normal_B.norm()), "normal", "must be a unit vector");
     check_mobility();

@@ -78,6 +78,7 @@ struct SchemeInfo {
   std::string_view summary;
   std::string_view source;
   bool needs_location = false;  ///< needs a detector that locates
+  bool friction = false;        ///< treats friction, where a scene has it
 };
 
 /// When is the world looked at? Each scheme is one short main loop.

@@ -11,8 +11,9 @@ inline namespace simulation {
 double energy_error(const EnergyLedger& ledger) {
   CompensatedSum error;
   error.add(ledger.unexplained());
-  for (const EnergyLine line : {EnergyLine::truncation, EnergyLine::late_impact,
-                                EnergyLine::position_correction, EnergyLine::roundoff}) {
+  for (const EnergyLine line :
+       {EnergyLine::truncation, EnergyLine::late_impact, EnergyLine::position_correction,
+        EnergyLine::roundoff, EnergyLine::projection}) {
     error.add(ledger.line(line));
   }
   return error.value();

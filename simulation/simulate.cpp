@@ -124,6 +124,12 @@ std::string refusal(const Model& model, const Plan& plan) {
         "scheme '{}' needs to know when two bodies touch; detector '{}' only tells whether they do",
         scheme.name, detector.name);
   }
+  if (model.has_friction() && !scheme.friction) {
+    return fmt::format(
+        "the scene has friction, of which scheme '{}' knows nothing; allowed: friction = 0 for all "
+        "bodies of the scene, or a scheme that treats it (see `kairos list`)",
+        scheme.name);
+  }
   if (const std::string pair = pair_across_islands(model); detector.at_step_ends && !pair.empty()) {
     return fmt::format("detector '{}': {}", detector.name, pair);
   }

@@ -121,7 +121,7 @@ std::unique_ptr<const ExactMotion> solve(const Scene& scene) {
   const long double g = -fall.y();
   const long double u = std::sqrt(ball.mass * g / drag->coefficient());
   return std::make_unique<const DragDrop>(balls.front(), ball.initial, gap, g, u,
-                                          ball.restitution * floor.restitution);
+                                          scene.restitution(ball, floor));
 }
 
 }  // namespace

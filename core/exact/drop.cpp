@@ -110,15 +110,11 @@ std::unique_ptr<const ExactMotion> solve(const Scene& scene) {
   const double y = floor.initial.pose.position.y();
   need(ball.initial.pose.position.y() - sphere->radius >= y, scene, "a ball above the floor");
   return std::make_unique<const Drop>(balls.front(), ball.initial, y, sphere->radius, -fall.y(),
-                                      ball.restitution * floor.restitution);
+                                      scene.restitution(ball, floor));
 }
 
 double restitution(const Scene& scene) {
-  double e = 1.0;
-  for (const Body& body : scene.bodies) {
-    e *= body.restitution;
-  }
-  return e;
+  return scene.bodies.size() == 2 ? scene.restitution(scene.bodies[0], scene.bodies[1]) : 1.0;
 }
 
 }  // namespace

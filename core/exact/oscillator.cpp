@@ -94,7 +94,7 @@ std::unique_ptr<const ExactMotion> solve(const Scene& scene) {
     const Body& other = scene.bodies[1 - balls.front()];
     const auto* sphere = std::get_if<Sphere>(&ball.shape);
     need(sphere != nullptr && is_plane(other), scene, "a sphere and a half-space at rest");
-    need(ball.restitution * other.restitution == 1.0, scene, "restitution 1");
+    need(scene.restitution(ball, other) == 1.0, scene, "restitution 1");
     const Pose& plane = other.initial.pose;
     const Vector3 normal = half_space_normal(std::get<HalfSpace>(other.shape), plane);
     wall = {normal,

@@ -72,7 +72,7 @@ std::unique_ptr<const ExactMotion> solve(const Scene& scene) {
            hits_face(position, box->half_extents, axis),
        scene, "a ball that flies at a face of the wall");
   return std::make_unique<const Reflection>(balls.front(), ball.initial, distance / speed,
-                                            ball.restitution * wall.restitution);
+                                            scene.restitution(ball, wall));
 }
 
 }  // namespace

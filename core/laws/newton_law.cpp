@@ -138,7 +138,7 @@ class NewtonLaw final : public ImpactLaw {
     ImpactEnergy energy;
     Side<double> of_a(a, a.state, contact);
     Side<double> of_b(b, b.state, contact);
-    const double e = a.body.restitution * b.body.restitution;
+    const double e = contact.restitution;
     const Vector3 impulse = collide<double>(of_a, of_b, contact.normal, e, energy.restitution_loss);
     if (impulse.isZero(0.0)) {
       return energy;
@@ -158,7 +158,7 @@ class NewtonLaw final : public ImpactLaw {
     of_a.orientation.normalize();
     of_b.orientation.normalize();
     const auto n = contact.normal.cast<long double>().normalized().eval();
-    const auto e = static_cast<long double>(a.body.restitution) * b.body.restitution;
+    const auto e = static_cast<long double>(contact.restitution);
     long double loss = 0.0L;
     if (collide<long double>(of_a, of_b, n, e, loss).isZero(0.0L)) {
       return 0.0;

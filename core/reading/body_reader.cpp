@@ -227,6 +227,25 @@ void refuse_unknown_keys(const TableReader& table, const EntityType& type) {
 
 }  // namespace
 
+double read_friction(const Item& item) {
+  const auto* number = std::get_if<double>(&item.value().data);
+  const auto* text = std::get_if<std::string>(&item.value().data);
+  if ((number != nullptr && *number == std::numeric_limits<double>::infinity()) ||
+      (text != nullptr && *text == "inf")) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const std::string allowed = limits::friction.text() + ", or inf (rough)";
+  const auto* whole = std::get_if<std::int64_t>(&item.value().data);
+  if (number == nullptr && whole == nullptr) {
+    item.fail(fmt::format("is {}; allowed: {}", item.value().type_name(), allowed));
+  }
+  const double x = number != nullptr ? *number : static_cast<double>(*whole);
+  if (!limits::friction.contains(x)) {
+    item.fail(fmt::format("is {}; allowed: {}", x, allowed));
+  }
+  return x;
+}
+
 Body read_body(const Item& item, const BodyDefaults& defaults) {
   const TableReader table(item);
   Body body;
@@ -247,6 +266,8 @@ Body read_body(const Item& item, const BodyDefaults& defaults) {
     return value ? value->number(range) : fallback;
   };
   body.restitution = number("restitution", limits::restitution, body.restitution);
+  const auto friction = table.find("friction");
+  body.friction = friction ? read_friction(*friction) : defaults.friction;
   body.G = number("G", limits::G, defaults.G);
   body.scale = number("scale", limits::scale, body.scale);
   if (const auto collision = table.find("collision_type")) {

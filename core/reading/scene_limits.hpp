@@ -17,6 +17,8 @@ inline constexpr Range mass{.lowest = 1e-30, .highest = 1e30, .unit = "kg"};
 inline constexpr Range inertia{.lowest = 0.0, .highest = 1e60, .above = true, .unit = "kg m^2"};
 inline constexpr Range G{.lowest = 0.0, .highest = 1e12, .unit = "m/s^2 or N"};
 inline constexpr Range restitution{.lowest = 0.0, .highest = 1.0};
+/// Infinite is allowed too: "inf", a rough surface.
+inline constexpr Range friction{.lowest = 0.0, .highest = 1e6};
 inline constexpr Range scale{.lowest = 0.0, .highest = 1e6, .above = true};
 inline constexpr Range density{.lowest = 0.0, .highest = 1e12, .unit = "kg/m^3"};
 inline constexpr Range coefficient{.lowest = 0.0, .highest = 1e6};

@@ -134,6 +134,15 @@ Scene read(const TableReader& table, const std::string& path) {
   if (const auto bounds = table.find("bounds")) {
     defaults.bounds = static_cast<Bounds>(bounds->choice(bounds_names));
   }
+  if (const auto friction = table.find("friction")) {
+    defaults.friction = read_friction(*friction);
+  }
+  const auto combination = [&table](std::string_view key, Combine fallback) {
+    const auto item = table.find(key);
+    return item ? static_cast<Combine>(item->choice(combine_names)) : fallback;
+  };
+  scene.friction_combine = combination("friction_combine", scene.friction_combine);
+  scene.restitution_combine = combination("restitution_combine", scene.restitution_combine);
   read_bodies(table.need("body", "at least one [[body]]"), defaults, scene);
   if (const auto force = table.find("force")) {
     read_forces(*force, defaults.G, scene);

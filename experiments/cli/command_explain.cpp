@@ -1,6 +1,7 @@
 #include "core/model.hpp"
 #include "experiments/cli/commands.hpp"
 #include "experiments/cli/run_options.hpp"
+#include "simulation/registry.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -15,7 +16,20 @@
 namespace kairos::experiments {
 namespace {
 
-/// What of the speed each impact keeps: the product of both bodies, which few expect.
+/// "1 x 0.5", "sqrt(1 x 0.5)", "min(1, 0.5)".
+std::string combination(Combine how, double e, double other) {
+  switch (how) {
+    case Combine::product:
+      return fmt::format("{} x {}", e, other);
+    case Combine::geometric_mean:
+      return fmt::format("sqrt({} x {})", e, other);
+    case Combine::minimum:
+      break;
+  }
+  return fmt::format("min({}, {})", e, other);
+}
+
+/// What of the speed each impact keeps: by default the product of both bodies, which few expect.
 void explain_restitution(const Scene& scene, const Model& model) {
   std::map<double, std::string> free, all;  // one body of each restitution
   for (BodyIndex i = 0; i < model.size(); ++i) {
@@ -31,11 +45,13 @@ void explain_restitution(const Scene& scene, const Model& model) {
   if (free.empty() || all.empty()) {
     return;
   }
+  const std::string_view how = to_string(scene.restitution_combine);
   fmt::print("\nrestitution\n");
   if (all.size() == 1 && all.begin()->first == 1.0) {
     fmt::print(
         "  impacts lose nothing\n      because the restitution of a body is 1 where nothing "
-        "is said, and an impact has the product of both\n");
+        "is said, and an impact has the {} of both\n",
+        how);
     return;
   }
   constexpr std::size_t most = 8;
@@ -43,13 +59,33 @@ void explain_restitution(const Scene& scene, const Model& model) {
   for (const auto& [e, ball] : free) {
     for (const auto& [other, partner] : all) {
       if (told.size() < most && told.insert(std::minmax(e, other)).second) {
-        fmt::print("  {} x {} = {:.6g}, as for {} and {}\n", e, other, e * other, ball, partner);
+        fmt::print("  {} = {:.6g}, as for {} and {}\n",
+                   combination(scene.restitution_combine, e, other),
+                   combine(scene.restitution_combine, e, other), ball, partner);
       }
     }
   }
   fmt::print(
-      "      because an impact has the product of both bodies' restitution under newton, 1 "
-      "for a body of which nothing is said; thesis knows none\n");
+      "      because an impact has the {} of both bodies' restitution under newton, 1 "
+      "for a body of which nothing is said; thesis knows none\n",
+      how);
+}
+
+/// Which schemes can run a scene with friction.
+void explain_friction(const Model& model) {
+  if (!model.has_friction()) {
+    return;
+  }
+  std::string treat;
+  std::string refuse;
+  for (const auto& scheme : schemes()) {
+    std::string& names = scheme->info().friction ? treat : refuse;
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", scheme->info().name);
+  }
+  fmt::print("  schemes that treat it: {}\n", treat.empty() ? "none yet" : treat);
+  if (!refuse.empty()) {
+    fmt::print("  schemes that know none and refuse the scene: {}\n", refuse);
+  }
 }
 
 void explain(const SceneOptions& options) {
@@ -58,6 +94,9 @@ void explain(const SceneOptions& options) {
   fmt::print("{}: {}\n", scene.name, scene.summary);
   std::string_view topic;
   for (const Decision& decision : model.decisions()) {
+    if (topic == "friction" && decision.topic != topic) {
+      explain_friction(model);
+    }
     if (decision.topic != topic) {
       topic = decision.topic;
       fmt::print("\n{}\n", topic);

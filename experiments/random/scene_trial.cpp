@@ -58,7 +58,7 @@ class Watch : public Recorder {
 
  private:
   void check_impact(const Event& event) {
-    const double e = model_->body(event.a).restitution * model_->body(event.b).restitution;
+    const double e = model_->restitution(event.a, event.b);
     if (const std::string broken = broken_restitution(event, e); !broken.empty()) {
       throw BrokenPromise{Fate::law,
                           fmt::format("'{}' and '{}': {}", model_->body(event.a).name,

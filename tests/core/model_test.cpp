@@ -7,6 +7,8 @@
 #include "tests/locations.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 using namespace kairos;
 
@@ -286,4 +288,50 @@ position = [2, 0, 0]
     CHECK((model.gravity_force(1) - Vector3(0, -9.8 * 2 + 9.8, 0)).norm() <= 1e-14);
     CHECK(decided(model, "forces", "buoyancy"));
   }
+}
+
+namespace {
+
+/// A ball that can roll on a floor, with these lines at the top of the file.
+Scene rolling(const std::string& top) {
+  return parse_scene(top +
+                         "\n[[body]]\nname = \"floor\"\nentity = \"wall\"\nshape = \"half-space\"\n"
+                         "restitution = 0.25\nfriction = 0.09\n[[body]]\nname = \"ball\"\n"
+                         "entity = \"body\"\nradius = 0.5\nmass = 1\nposition = [0, 0.5, 0]\n",
+                     "");
+}
+
+}  // namespace
+
+TEST_CASE("model: a pair's friction and restitution are combined as the scene says", "[model]") {
+  const Model usual(rolling("friction = 0.25"));
+  CHECK(usual.friction(0, 1) == Approx(0.15).epsilon(1e-15));
+  CHECK(usual.friction(0, 1) == usual.friction(1, 0));
+  CHECK(usual.restitution(0, 1) == 0.25);  // the product with 1
+  CHECK(usual.has_friction());
+
+  const Model product(
+      rolling("friction = 0.25\nfriction_combine = \"product\"\n"
+              "restitution_combine = \"geometric-mean\""));
+  CHECK(product.friction(0, 1) == 0.09 * 0.25);
+  CHECK(product.restitution(0, 1) == 0.5);
+  const Model least(rolling("friction = 0.25\nfriction_combine = \"minimum\""));
+  CHECK(least.friction(0, 1) == 0.09);
+
+  const Model rough(rolling("friction = inf"));
+  CHECK(std::isinf(rough.friction(0, 1)));
+  // Where one is smooth the pair is, whatever the other and however they combine.
+  for (const Combine how : {Combine::product, Combine::geometric_mean, Combine::minimum}) {
+    CHECK(combine(how, 0.0, std::numeric_limits<double>::infinity()) == 0.0);
+  }
+}
+
+TEST_CASE("model: a sphere turns where friction can turn it, and only there", "[model]") {
+  const Model smooth(rolling(""));
+  CHECK_FALSE(smooth.has_friction());
+  CHECK_FALSE(smooth.rotates(1));
+  const Model rough(rolling("friction = 0.3"));
+  CHECK(rough.rotates(1));
+  CHECK(rough.closed_form(0));  // at a constant rate between impacts
+  CHECK(decided(rough, "friction", "spinning friction is left out"));
 }

@@ -93,7 +93,7 @@ EventAccumulation::EventAccumulation(EventRun& run, const EventMotions& motions)
     : run_(run), motions_(motions), histories_(run.model.size()) {}
 
 double EventAccumulation::restitution(BodyIndex a, BodyIndex b) const {
-  return run_.model.body(a).restitution * run_.model.body(b).restitution;
+  return run_.model.restitution(a, b);
 }
 
 double EventAccumulation::rest_tolerance(BodyIndex a, BodyIndex b, double e) const {

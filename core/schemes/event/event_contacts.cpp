@@ -60,8 +60,7 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double patience,
   const ImpactEnergy energy =
       run_.exchange(event, motions_.now(a), motions_.now(b), unused_a, unused_b);
   assert(!run_.law.info().needs_contact ||
-         broken_restitution(event, run_.model.body(a).restitution * run_.model.body(b).restitution)
-             .empty());
+         broken_restitution(event, event.contact.restitution).empty());
   run_.ledger.add(EnergyLine::restitution_loss, energy.restitution_loss);
   run_.ledger.add(EnergyLine::driven_work, energy.driven_work);
   run_.ledger.add(EnergyLine::conveyor_and_hand, energy.conveyor_and_hand);
@@ -133,7 +132,7 @@ void EventContacts::look_again(BodyIndex a, BodyIndex b, Instant t, double patie
 
 /// Whether a ball comes to rest on a face: its hop is too small to tell.
 bool EventContacts::lands(BodyIndex a, BodyIndex b, const Contact& contact, Instant t) {
-  const double e = run_.model.body(a).restitution * run_.model.body(b).restitution;
+  const double e = run_.model.restitution(a, b);
   const double tolerance = accumulation_.rest_tolerance(a, b, e);
   for (const BodyIndex ball : {a, b}) {
     const BodyIndex surface = ball == a ? b : a;

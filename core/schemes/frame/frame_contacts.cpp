@@ -10,7 +10,7 @@ Contact FrameContacts::contact(BodyIndex a, BodyIndex b, const BodyState& state_
                                const BodyState& state_b) const {
   const Overlap o =
       run_.detector.overlap(run_.model.shape(a), state_a.pose, run_.model.shape(b), state_b.pose);
-  return {o.point, o.normal, o.gap};
+  return {o.point, o.normal, o.gap, run_.model.restitution(a, b), run_.model.friction(a, b)};
 }
 
 void FrameContacts::handle(BodyIndex a, BodyIndex b, BodyState& state_a, BodyState& state_b,

@@ -23,6 +23,8 @@ ImpactEnergy SchemeRun::exchange(Event& event, BodyState& a, BodyState& b, Vecto
                                  Vector3& force_b) {
   event.before_a = a;
   event.before_b = b;
+  event.contact.restitution = model.restitution(event.a, event.b);
+  event.contact.friction = model.friction(event.a, event.b);
   const ImpactBody body_a{model.body(event.a), model.inertia(event.a), a, force_a};
   const ImpactBody body_b{model.body(event.b), model.inertia(event.b), b, force_b};
   const ImpactEnergy energy = law.apply(event.contact, body_a, body_b);
