@@ -6,6 +6,7 @@
 #include "core/impact_law.hpp"
 #include "core/recorder.hpp"
 #include "core/stepper.hpp"
+#include "core/time_stepping_options.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -41,6 +42,7 @@ struct SchemeOptions {
   std::int64_t max_events = 0;         ///< of event-driven in one frame; 0: see `WorkBudget`
   double toi_tolerance = 0.0;          ///< m; 0: the detector's default
   bool roundoff = false;               ///< replay steps in double-double for the ledger's roundoff
+  TimeSteppingOptions stepping = {};   ///< of the schemes that step over contacts
   CheckpointKeeper* keeper = nullptr;  ///< takes checkpoints; null: none are made
   std::string_view resume = {};        ///< a checkpoint to go on from; empty: from the start
 };
@@ -53,6 +55,7 @@ struct Cost {
   std::int64_t overlap_tests = 0;
   std::int64_t toi_queries = 0;
   std::int64_t toi_evaluations = 0;
+  std::int64_t contact_solves = 0;  ///< of one contact each, by what solves for contact impulses
   std::int64_t impacts = 0;
   std::int64_t events = 0;
 
@@ -79,6 +82,9 @@ struct SchemeInfo {
   std::string_view source;
   bool needs_location = false;  ///< needs a detector that locates
   bool friction = false;        ///< treats friction, where a scene has it
+  /// Where it moves bodies by a method of its own: what that is called. No other integrator then
+  /// has a part in the run, and only `auto` or this name are taken.
+  std::string_view integrator = {};
 };
 
 /// When is the world looked at? Each scheme is one short main loop.

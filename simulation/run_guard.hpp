@@ -24,7 +24,9 @@ class RunGuard : public Recorder {
     std::string reason;
   };
 
-  explicit RunGuard(Recorder& inner) : inner_(inner) {}
+  /// `watch_spin`: torques come from forces and impacts alone, not from contacts that last.
+  explicit RunGuard(Recorder& inner, bool watch_spin = true)
+      : inner_(inner), watch_spin_(watch_spin) {}
 
   void begin(const Model& model) override;
   [[nodiscard]] bool wants_motions() const override { return inner_.wants_motions(); }
@@ -44,6 +46,7 @@ class RunGuard : public Recorder {
   [[nodiscard]] double most_spin_energy(const BodyState& body, BodyIndex i) const;
 
   Recorder& inner_;
+  const bool watch_spin_;
   const Model* model_ = nullptr;
   std::vector<char> free_top_;       ///< turns, and no force involves that
   std::vector<double> most_energy_;  ///< J, since the last impact; infinite: not known yet

@@ -76,6 +76,7 @@ SchemeOptions scheme_options(const Scene& scene, const RunChoice& choice) {
   options.max_events = choice.max_events;
   options.toi_tolerance = choice.toi_tolerance;
   options.roundoff = choice.roundoff;
+  options.stepping = choice.stepping;
   return options;
 }
 
@@ -184,7 +185,7 @@ RunResult simulate(const Model& model, const RunChoice& choice, Recorder& record
   if (continuation.keeper != nullptr || !continuation.resume.empty()) {
     continue_as(continuation, plan);
   }
-  RunGuard guard(recorder);
+  RunGuard guard(recorder, plan.scheme->info().integrator.empty());
   try {
     return plan.scheme->run(model, plan.method, plan.options, guard);
   } catch (const RunGuard::Broken& found) {

@@ -37,6 +37,7 @@ struct RunChoice {
   std::int64_t max_events = 0;  ///< of event-driven in one frame; 0: see `WorkBudget`
   double toi_tolerance = 0.0;   ///< m
   bool roundoff = false;
+  TimeSteppingOptions stepping = {};  ///< of the schemes that step over contacts
   bool cold_restarts =
       false;  ///< steppers forget all they know at every impact, see the experiment
 };

@@ -110,9 +110,9 @@ Contender original(const std::string& name, const Model& model) {
 
 Contender event_driven(const Model& model) {
   return {"kairos: event-driven, closed-form", [&model] {
-            RunChoice choice;
-            choice.duration = 2.0 * std::sqrt(2.0 * 4.5 / 9.8) * static_cast<double>(bounces);
-            choice.frames = FixedFrames{*choice.duration};  // nobody looks in between
+            const double whole = 2.0 * std::sqrt(2.0 * 4.5 / 9.8) * static_cast<double>(bounces);
+            // One frame: nobody looks in between.
+            const RunChoice choice{.frames = FixedFrames{whole}, .duration = whole};
             Recorder nobody;
             return simulate(model, choice, nobody).cost.impacts;
           }};

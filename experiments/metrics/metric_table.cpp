@@ -130,6 +130,8 @@ std::vector<Metric> cost_metrics() {
       {{"overlap_tests", "", "overlap tests"}, counted<&Cost::overlap_tests>},
       {{"toi_queries", "", "time-of-impact queries"}, counted<&Cost::toi_queries>},
       {{"toi_evaluations", "", "gap evaluations in these"}, counted<&Cost::toi_evaluations>},
+      {{"contact_solves", "", "of single contacts, by solvers for contact impulses"},
+       counted<&Cost::contact_solves>},
       {{"impacts", "", "impacts handled"}, counted<&Cost::impacts>},
       {{"events", "", "events"}, counted<&Cost::events>},
   };

@@ -157,6 +157,7 @@ void add_cost(JsonWriter& json, const Cost& cost) {
   json.count("overlap_tests", cost.overlap_tests);
   json.count("toi_queries", cost.toi_queries);
   json.count("toi_evaluations", cost.toi_evaluations);
+  json.count("contact_solves", cost.contact_solves);
   json.count("impacts", cost.impacts);
   json.count("events", cost.events);
   json.close();

@@ -20,9 +20,9 @@ struct MeasuredRun {
   Cost cost{};
 
   [[nodiscard]] bool completed() const { return status == "completed"; }
-  /// Counted work: right-hand sides, overlap tests and gap evaluations, each one.
+  /// Counted work: right-hand sides, overlap tests, gap evaluations and contact solves, each one.
   [[nodiscard]] std::int64_t work() const {
-    return cost.right_hand_sides + cost.overlap_tests + cost.toi_evaluations;
+    return cost.right_hand_sides + cost.overlap_tests + cost.toi_evaluations + cost.contact_solves;
   }
 };
 
