@@ -11,10 +11,20 @@ namespace {
 
 /// How long no point of b gets out from `depth`, s. The bound of a long horizon is useless where
 /// bodies accelerate: `horizon` shrinks to what the answer needs, and is taken up by the next step.
-double safely_inside(const PairMotion& motion, const Kinematics& k, double depth, double& horizon) {
+/// Against a half-space only its normal separates, and the gap along it says more than a speed.
+double safely_inside(PairKind kind, const PairMotion& motion, const Kinematics& k,
+                     const Witness& witness, double& horizon) {
+  const bool plane = kind == PairKind::sphere_plane || kind == PairKind::box_plane;
+  const double depth = -witness.gap - k.error;
   while (true) {
-    const double speed = motion.speed_bound(k, motion.bounds(k.t, horizon), horizon);
-    const double safe = speed > 0.0 ? depth / speed : horizon;
+    const TurnBounds bounds = motion.bounds(k.t, horizon);
+    double safe = 0.0;
+    if (plane) {
+      safe = SeparationFunction(motion, k, bounds, witness).advance_inside(horizon);
+    } else {
+      const double speed = motion.speed_bound(k, bounds, horizon);
+      safe = speed > 0.0 ? depth / speed : horizon;
+    }
     if (!(safe < 0.25 * horizon) || !(depth > 0.0)) {
       return std::min(safe, horizon);
     }
@@ -27,7 +37,7 @@ double safely_inside(const PairMotion& motion, const Kinematics& k, double depth
 TimeOfImpact advance_to_separation(const MovingShape& a, const MovingShape& b, const Window& window,
                                    double tolerance) {
   const PairKind kind = pair_kind(a.shape, b.shape);
-  const PairMotion motion(a, b, window);
+  const PairMotion motion(a, b, window, Positions::heights);
   const double enough = tolerance > 0.0 ? tolerance : default_tolerance(a, b, window);
   const double duration = motion.duration();
   TimeOfImpact toi;
@@ -40,8 +50,8 @@ TimeOfImpact advance_to_separation(const MovingShape& a, const MovingShape& b, c
     motion.evaluate(t + probe, k);
     ++toi.evaluations;
     const Witness witness = find_witness(kind, motion, k);
-    toi.normal = witness.n / witness.length;
-    if (witness.gap > k.error / witness.length && (t + probe > 0.0 || witness.gap > enough)) {
+    toi.normal = witness.n;
+    if (witness.gap > k.error && (t + probe > 0.0 || witness.gap > enough)) {
       toi.status = t + probe > 0.0 ? ToiStatus::impact : ToiStatus::separated;
       toi.t_lo = t;
       toi.t_hi = t + probe;
@@ -54,7 +64,7 @@ TimeOfImpact advance_to_separation(const MovingShape& a, const MovingShape& b, c
       t += probe;
       probe = 0.0;
       horizon = std::min(duration - t, 4.0 * horizon);
-      const double safe = safely_inside(motion, k, -witness.gap - k.error, horizon);
+      const double safe = safely_inside(kind, motion, k, witness, horizon);
       settled = !(t + safe > t);
       t = std::min(t + safe, duration);
     } else {  // within tolerance of parting: look ahead, ever further

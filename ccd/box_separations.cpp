@@ -152,6 +152,73 @@ bool overlap_by_faces(const Operands& o, double faces) {
   return 4.0 * (std::sqrt(least) + 16.0 * unit_roundoff) * size < -faces - o.error;
 }
 
+/// Nearly parallel edges i of a and j of b: the separation along their cross product, made unit. In
+/// the frame of a that has two entries of column j, so that it is as exact as these, however small.
+bool edges_apart(const RelativeBoxes& s, int i, int j, double error) {
+  const int k = (i + 1) % 3;
+  const int l = (i + 2) % 3;
+  const double x = -s.axes_A(l, j);
+  const double y = s.axes_A(k, j);
+  const double size = std::max(std::abs(x), std::abs(y));
+  if (!(size > 0.0)) {
+    return false;
+  }
+  const double length = std::hypot(x / size, y / size);
+  Vector3 n = Vector3::Zero();
+  n[k] = x / size / length;
+  n[l] = y / size / length;
+  const Vector3 along_b = s.axes_A.transpose() * n;
+  return std::abs(n.dot(s.d_A)) - s.half_a.dot(n.cwiseAbs()) - s.half_b.dot(along_b.cwiseAbs()) >
+         error;
+}
+
+/// Is a face apart by more than `face`, or a pair of edges by more than the error?
+KAIROS_INLINE bool apart_beyond(const RelativeBoxes& boxes, const Operands& o, double face) {
+  Bits apart{};
+  Bits inside = ~Bits{};
+  Lanes faces[2];
+  for_all_rows(o, [&](int row, const Lanes& value) {
+    apart |= value > (row < 2 ? face : o.error);
+    if (row < 2) {
+      faces[row] = value;
+    } else {
+      inside &= value < -o.error;
+    }
+  });
+  if (any(apart)) {
+    return true;
+  }
+  if (!any(~inside)) {
+    return false;
+  }
+  // What nearly parallel edges hide in their error can be no more than 4 sine * size above the
+  // faces.
+  constexpr double small_sine = 0.05;
+  const double greatest =
+      std::max({faces[0][0], faces[0][1], faces[0][2], faces[1][0], faces[1][1], faces[1][2]});
+  const double size = o.error / (24.0 * unit_roundoff);
+  const double needed = greatest < 0.0 ? -greatest / (4.0 * size) : 0.0;
+  for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i < 3; ++i) {
+      const double x = o.axis[j][(i + 1) % 3];
+      const double y = o.axis[j][(i + 2) % 3];
+      const double square = x * x + y * y;
+      if (square >= needed * needed && square < small_sine * small_sine &&
+          edges_apart(boxes, i, j, o.error)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// Are all fifteen separations, unnormalised, below -error?
+KAIROS_INLINE bool all_inside(const Operands& o, double error) {
+  Bits inside = ~Bits{};
+  for_all_rows(o, [&](int, const Lanes& value) { inside &= value < -error; });
+  return !any(~inside);
+}
+
 KAIROS_INLINE Verdict verdict_of(const Operands& o) {
   Bits apart{};
   Bits inside = ~Bits{};
@@ -256,9 +323,13 @@ KAIROS_INLINE AxisSeparation greatest_of(const Operands& o) {
 KAIROS_WIDE bool boxes_overlap(const RelativeBoxes& boxes) {
   Operands o;
   operands_of(boxes, o);
-  Bits apart{};
-  for_all_rows(o, [&](int row, const Lanes& value) { apart |= value > (row < 2 ? 0.0 : o.error); });
-  return !any(apart);
+  return !apart_beyond(boxes, o, 0.0);
+}
+
+KAIROS_WIDE bool boxes_apart(const RelativeBoxes& boxes) {
+  Operands o;
+  operands_of(boxes, o);
+  return apart_beyond(boxes, o, o.error);
 }
 
 KAIROS_WIDE AxisSeparation greatest_separation(const RelativeBoxes& boxes) {
@@ -286,6 +357,14 @@ KAIROS_WIDE Verdict classify(const Vector3& half_a, const Matrix3& R_WA, const V
   Operands o;
   operands_of(half_a, R_WA, half_b, R_WB, d_W, o);
   return verdict_of(o);
+}
+
+KAIROS_WIDE bool all_separations_below(const Vector3& half_a, const Matrix3& R_WA,
+                                       const Vector3& half_b, const Matrix3& R_WB,
+                                       const Vector3& d_W, double error) {
+  Operands o;
+  operands_of(half_a, R_WA, half_b, R_WB, d_W, o);
+  return all_inside(o, std::max(error, o.error));
 }
 
 KAIROS_WIDE Verdict classify(const OrientedBox& a, const OrientedBox& b) {

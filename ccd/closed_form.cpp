@@ -2,11 +2,42 @@
 
 #include "ccd/descent_answer.hpp"
 #include "ccd/pair_overlap.hpp"
+#include "ccd/relative_boxes.hpp"
+#include "ccd/roundoff.hpp"
 #include "ccd/shape_detector.hpp"
 #include "ccd/sphere_plane.hpp"
 #include "ccd/sphere_sphere.hpp"
 
+#include <cmath>
+
 namespace kairos::ccd {
+namespace {
+
+/// Neither do the shapes overlap at these poses, nor could they in exact arithmetic, nor are they
+/// nearer than their error radii. Balls have it from their closed forms: there what anyone computes
+/// is enough.
+bool clear_at_poses(const MovingShape& a, const Pose& pose_a, const MovingShape& b,
+                    const Pose& pose_b) {
+  const double radii = a.motion.error_radius + b.motion.error_radius;
+  const auto* box = std::get_if<Box>(&a.shape);
+  const auto* other = std::get_if<Box>(&b.shape);
+  if (radii == 0.0 && box == nullptr) {
+    return !shapes_overlap(a.shape, pose_a, b.shape, pose_b);
+  }
+  if (radii == 0.0 && other != nullptr) {
+    return boxes_apart(RelativeBoxes(*box, pose_a, *other, pose_b));
+  }
+  const auto extent = [](const Shape& shape) {
+    const double radius = bounding_radius(shape);
+    return std::isfinite(radius) ? 2.0 * radius : 0.0;
+  };
+  const double size =
+      (pose_b.position - pose_a.position).lpNorm<1>() + extent(a.shape) + extent(b.shape);
+  return measure_overlap(a.shape, pose_a, b.shape, pose_b).gap - radii >
+         24.0 * unit_roundoff * size;
+}
+
+}  // namespace
 
 void retreat_from_overlap(const MovingShape& a, const MovingShape& b, const Window& window,
                           TimeOfImpact& toi) {
@@ -14,10 +45,10 @@ void retreat_from_overlap(const MovingShape& a, const MovingShape& b, const Wind
     return;
   }
   double back = ulp(toi.t_lo);
-  for (int attempt = 0; attempt < 40 && toi.t_lo > 0.0; ++attempt) {
+  for (int attempt = 0; attempt < most_retreats && toi.t_lo > 0.0; ++attempt) {
     const Pose pose_a = a.motion.pose(local_time(a.motion, window, toi.t_lo));
     const Pose pose_b = b.motion.pose(local_time(b.motion, window, toi.t_lo));
-    if (!shapes_overlap(a.shape, pose_a, b.shape, pose_b)) {
+    if (clear_at_poses(a, pose_a, b, pose_b)) {
       return;
     }
     toi.t_lo = std::max(0.0, toi.t_lo - back);

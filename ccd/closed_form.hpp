@@ -22,7 +22,13 @@ namespace kairos::ccd {
                                                                  const MovingShape& b,
                                                                  const Window& window);
 
-/// Moves `t_lo` earlier, by ulps, until the shapes do not overlap at the poses of the motions.
+/// How often a retreat from an overlap of the poses may double: from an ulp of the time to half of
+/// it and more. A second or less after the start an ulp of time is less than coordinates of 1e8 m
+/// can show, so that it takes most of them.
+inline constexpr int most_retreats = 64;
+
+/// Moves `t_lo` earlier, by ulps doubled each time, until the shapes do not overlap at the poses of
+/// the motions.
 void retreat_from_overlap(const MovingShape& a, const MovingShape& b, const Window& window,
                           TimeOfImpact& toi);
 

@@ -1,5 +1,6 @@
 #include "ccd/pair_motion.hpp"
 
+#include "ccd/plane_normal.hpp"
 #include "ccd/rotation_matrix.hpp"
 #include "ccd/roundoff.hpp"
 #include "ccd/sine_cosine.hpp"
@@ -118,7 +119,8 @@ double angular_acceleration_bound(const Motion& motion, double s0, double s1, do
 
 }  // namespace
 
-PairMotion::PairMotion(const MovingShape& a, const MovingShape& b, const Window& window)
+PairMotion::PairMotion(const MovingShape& a, const MovingShape& b, const Window& window,
+                       Positions positions)
     : motion_a_(&a.motion),
       motion_b_(&b.motion),
       s_a_(local_start(a.motion, window)),
@@ -143,36 +145,13 @@ PairMotion::PairMotion(const MovingShape& a, const MovingShape& b, const Window&
   turns_a_ = oriented_a_ && a.motion.rotation != RotationKind::fixed;
   turns_b_ = oriented_b_ && b.motion.rotation != RotationKind::fixed;
 
-  // d = p_b - p_a in window time; of its rounding, that of the shifts grows as the motions do from
-  // their own starts, that of the difference only with d itself: far from the origin two bodies
-  // that move together lose nothing.
-  const auto seen = [this](const Motion& motion, double s) {
-    if (s == 0.0 || motion.position.degree() == 0) {
-      return motion.position;
-    }
-    const Polynomial<3> magnitudes = [&motion] {
-      Polynomial<3> m = motion.position;
-      for (int k = 0; k <= m.degree(); ++k) {
-        m[k].setConstant(motion.position[k].lpNorm<Eigen::Infinity>());
-      }
-      return m;
-    }();
-    const Polynomial<3> shifted_magnitudes = magnitudes.shifted(std::abs(s));
-    for (int k = 0; k <= magnitudes.degree(); ++k) {
-      position_error_[static_cast<std::size_t>(k)] +=
-          4.0 * (magnitudes.degree() + 1) * u * shifted_magnitudes[k][0];
-    }
-    return motion.position.shifted(s);
-  };
-  d_ = seen(b.motion, s_b_);
-  const Polynomial<3> p_a = seen(a.motion, s_a_);
-  d_.resize(std::max(d_.degree(), p_a.degree()));
-  for (int k = 0; k <= p_a.degree(); ++k) {
-    d_[k] -= p_a[k];
-  }
-  for (int k = 0; k <= d_.degree(); ++k) {
-    position_error_[static_cast<std::size_t>(k)] +=
-        (4.0 * k + 8.0) * u * d_[k].lpNorm<Eigen::Infinity>();
+  // A normal that is an axis of its body rounds nothing where that is not turned.
+  const bool along_axis = (normal_b_.array() != 0.0).count() == 1;
+  const bool tilted = !(along_axis && is_identity(b.motion.quaternion[0]));
+  if (plane_b_ && !turns_b_ && tilted && positions == Positions::heights) {
+    subtract_heights();
+  } else {
+    subtract_positions();
   }
   if (d_.degree() > 2) {
     simple_ = false;
@@ -181,8 +160,85 @@ PairMotion::PairMotion(const MovingShape& a, const MovingShape& b, const Window&
       curvature_[k] *= 0.5;
     }
   }
+  add_rotation_errors();
+}
+
+namespace {
+
+/// Bound of the rounding of each coefficient of a polynomial that is seen from s on.
+template <typename AddError>
+Polynomial<3> seen_from(const Polynomial<3>& p, double s, const AddError& add_error) {
+  if (s == 0.0 || p.degree() == 0) {
+    return p;
+  }
+  Polynomial<3> magnitudes = p;
+  for (int k = 0; k <= p.degree(); ++k) {
+    magnitudes[k].setConstant(p[k].lpNorm<Eigen::Infinity>());
+  }
+  const Polynomial<3> shifted = magnitudes.shifted(std::abs(s));
+  for (int k = 0; k <= p.degree(); ++k) {
+    add_error(k, 4.0 * (p.degree() + 1) * u * shifted[k][0]);
+  }
+  return p.shifted(s);
+}
+
+}  // namespace
+
+/// d = p_b - p_a in window time; of its rounding, that of the shifts grows as the motions do from
+/// their own starts, that of the difference only with d itself: far from the origin two bodies
+/// that move together lose nothing.
+void PairMotion::subtract_positions() {
+  const auto add = [this](int k, double error) {
+    position_error_[static_cast<std::size_t>(k)] += error;
+  };
+  d_ = seen_from(motion_b_->position, s_b_, add);
+  const Polynomial<3> p_a = seen_from(motion_a_->position, s_a_, add);
+  d_.resize(std::max(d_.degree(), p_a.degree()));
+  for (int k = 0; k <= p_a.degree(); ++k) {
+    d_[k] -= p_a[k];
+  }
+  for (int k = 0; k <= d_.degree(); ++k) {
+    add(k, (4.0 * k + 8.0) * u * d_[k].lpNorm<Eigen::Infinity>());
+  }
+}
+
+/// Against a half-space that does not turn only the height counts: d = n (n . (p_b - p_a)), with n
+/// in twice the precision, so that the way along the plane adds no rounding (eq. 12).
+void PairMotion::subtract_heights() {
+  const PlaneNormal n(normal_b_, motion_b_->quaternion[0]);
+  const auto add = [this](int k, double error) {
+    position_error_[static_cast<std::size_t>(k)] += error;
+  };
+  const Vector3 zero = Vector3::Zero();
+  // What moves, less its constant part: the difference of those is exact.
+  const auto heights = [&](const Motion& motion, double s) {
+    Polynomial<3> h;
+    h.resize(motion.position.degree());
+    for (int k = 1; k <= motion.position.degree(); ++k) {
+      const double height = n.height(motion.position[k], zero);
+      h[k] = n.rounded() * height;
+      add(k, PlaneNormal::error(height, motion.position[k].lpNorm<1>()));
+    }
+    return seen_from(h, s, add);
+  };
+  d_ = heights(*motion_b_, s_b_);
+  const Polynomial<3> a = heights(*motion_a_, s_a_);
+  d_.resize(std::max(d_.degree(), a.degree()));
+  for (int k = 0; k <= a.degree(); ++k) {
+    d_[k] -= a[k];
+  }
+  const double apart = n.height(motion_b_->position[0], motion_a_->position[0]);
+  d_[0] += n.rounded() * apart;
+  add(0, PlaneNormal::error(
+             apart, motion_b_->position[0].lpNorm<1>() + motion_a_->position[0].lpNorm<1>()));
+  for (int k = 0; k <= d_.degree(); ++k) {
+    add(k, (4.0 * k + 8.0) * u * d_[k].lpNorm<Eigen::Infinity>());
+  }
+}
+
+void PairMotion::add_rotation_errors() {
   for (const bool second : {false, true}) {
-    const Motion& motion = second ? b.motion : a.motion;
+    const Motion& motion = second ? *motion_b_ : *motion_a_;
     const double s = second ? s_b_ : s_a_;
     if (!(second ? oriented_b_ : oriented_a_)) {
       continue;
@@ -190,10 +246,13 @@ PairMotion::PairMotion(const MovingShape& a, const MovingShape& b, const Window&
     if (!(second ? turns_b_ : turns_a_)) {
       rotation_error_ += is_identity(motion.quaternion[0]) ? 0.0 : 8.0 * u;
     } else if (motion.rotation == RotationKind::constant_rate) {
+      const double rate = motion.rotation_rate.norm();
       rotation_error_ += 40.0 * u;
-      (second ? rate_b_ : rate_a_) = motion.rotation_rate.norm();
+      (second ? rate_b_ : rate_a_) = rate;
+      // The angle is a sum of two doubles, off by some u^2 of itself.
+      rotation_error_ += 32.0 * u * u * rate * std::abs(s);
+      rotation_error_rate_ += 32.0 * u * u * rate;
       if (s != 0.0) {  // s + t is rounded
-        const double rate = motion.rotation_rate.norm();
         rotation_error_ += 2.0 * u * rate * std::abs(s);
         rotation_error_rate_ += 2.0 * u * rate;
       }
@@ -212,6 +271,7 @@ void PairMotion::evaluate_translation(double t, Kinematics& k) const {
   Vector3 c = Vector3::Zero();
   double error = position_error_[static_cast<std::size_t>(degree)];
   double error_rate = error * degree;
+  double error_second = 0.5 * error_rate * (degree - 1);
   for (int i = degree - 1; i >= 0; --i) {
     c = c * t + v;
     v = v * t + d;
@@ -220,12 +280,19 @@ void PairMotion::evaluate_translation(double t, Kinematics& k) const {
     if (i > 0) {
       error_rate = error_rate * t + position_error_[static_cast<std::size_t>(i)] * i;
     }
+    if (i > 1) {
+      error_second =
+          error_second * t + 0.5 * position_error_[static_cast<std::size_t>(i)] * i * (i - 1);
+    }
   }
   k.d = d;
   k.v = v;
   k.c = c;
   k.error = 2.0 * error + 16.0 * u * d.lpNorm<1>() + 4.0 * u * reach_;
   k.rate_error = 2.0 * error_rate + 32.0 * u * v.lpNorm<1>();
+  k.second_error = 2.0 * error_second + 32.0 * u * c.lpNorm<1>();
+  k.still_rate_error = k.rate_error;
+  k.still_second_error = k.second_error;
 }
 
 void PairMotion::evaluate(double t, Kinematics& k) const {
@@ -254,10 +321,12 @@ void PairMotion::evaluate(double t, Kinematics& k) const {
       }
     }
   }
+  const double turning = k.w_a.lpNorm<1>() + k.w_b.lpNorm<1>();
+  const double products = 2.0 * (rotation + 16.0 * u);
   k.error += rotation * distance + (rotation + 16.0 * u) * extents;
-  k.rate_error += 2.0 * rotation * k.v.lpNorm<1>() + 2.0 * (rotation + 16.0 * u) *
-                                                         (k.w_a.lpNorm<1>() + k.w_b.lpNorm<1>()) *
-                                                         (distance + extents);
+  k.rate_error += 2.0 * rotation * k.v.lpNorm<1>() + products * turning * (distance + extents);
+  k.second_error += 2.0 * rotation * k.c.lpNorm<1>() +
+                    products * turning * (k.v.lpNorm<1>() + turning * (distance + extents));
 }
 
 TurnBounds PairMotion::bounds(double t, double horizon) const {
@@ -283,25 +352,46 @@ double PairMotion::bend(double t, double t1) const {
   return d_.degree() > 2 ? hull_bound(curvature_, t, t1, true) : 0.0;
 }
 
-double PairMotion::total_turn() const {
-  const double rate = rate_a_ + rate_b_;
-  return rate > 0.0 ? rate * duration_ : 0.0;
-}
-
 double PairMotion::speed_bound(const Kinematics& k, const TurnBounds& turn, double horizon) const {
   const double bent = 2.0 * (k.c.norm() + turn.bend);
-  return (k.v.norm() + (bent > 0.0 ? bent * horizon : 0.0) + turn.w_a * radius_a_ +
-          turn.w_b * radius_b_) *
-         (1.0 + 16.0 * u);
+  const double speed = k.v.norm() + (bent > 0.0 ? bent * horizon : 0.0);
+  double lever = radius_b_;
+  if (plane_b_ && turn.w_b > 0.0) {  // it carries all that is above it, however far
+    lever = k.d.norm() + (speed > 0.0 ? speed * horizon : 0.0) + radius_a_;
+  }
+  return (speed + turn.w_a * radius_a_ + (lever > 0.0 ? turn.w_b * lever : 0.0)) * (1.0 + 16.0 * u);
+}
+
+double PairMotion::acceleration_bound(const Kinematics& k, double horizon) const {
+  const TurnBounds turn = bounds(k.t, horizon);
+  double lever = radius_b_;
+  double coriolis = 0.0;
+  if (plane_b_ && turn.w_b > 0.0) {
+    lever = k.d.norm() + (horizon > 0.0 ? k.v.norm() * horizon : 0.0) + radius_a_;
+    coriolis = 2.0 * turn.w_b * k.v.norm();
+  }
+  return 2.0 * (k.c.norm() + bend(k.t, duration_)) + coriolis +
+         (turn.w_a * turn.w_a + turn.alpha_a) * radius_a_ +
+         (turn.w_b * turn.w_b + turn.alpha_b) * lever;
 }
 
 double PairMotion::time_to_cover(double length, double speed, const Kinematics& k) const {
-  // Half the acceleration of any point now, and in the rest of the window as far as origins go.
-  const TurnBounds turn = bounds(k.t, 0.0);
-  const double half = k.c.norm() + bend(k.t, duration_) +
-                      0.5 * ((turn.w_a * turn.w_a + turn.alpha_a) * radius_a_ +
-                             (turn.w_b * turn.w_b + turn.alpha_b) * radius_b_);
+  const double half = 0.5 * acceleration_bound(k, 0.0);
   return 2.0 * length / (speed + std::sqrt(speed * speed + 4.0 * length * half));
+}
+
+Kinematics reversed(const Kinematics& k) {
+  Kinematics back = k;
+  back.v = -k.v;
+  back.w_a = -k.w_a;
+  back.w_b = -k.w_b;
+  return back;
+}
+
+TurnBounds reversed(const TurnBounds& turn) {
+  TurnBounds back = turn;
+  back.bend *= 2.0;  // of d'' from what it is at the start, and that from what it is at the end
+  return back;
 }
 
 }  // namespace kairos::ccd

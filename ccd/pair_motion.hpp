@@ -15,9 +15,15 @@ struct Kinematics {
   Matrix3 R_WB;    ///< of a half-space: `R_WB.col(1)` is its normal
   Vector3 w_a;     ///< angular velocities, rad/s
   Vector3 w_b;
-  double error = 0.0;       ///< bound of the rounding error of any separation, m
-  double rate_error = 0.0;  ///< the same of its rate, m/s
+  double error = 0.0;               ///< bound of the rounding error of any separation, m
+  double rate_error = 0.0;          ///< the same of its rate, m/s
+  double second_error = 0.0;        ///< the same of half its second derivative, m/s^2
+  double still_rate_error = 0.0;    ///< of the rate along a direction that stays, of hulls that do
+  double still_second_error = 0.0;  ///< not turn, m/s and m/s^2
 };
+
+/// The same with time running backwards: where the bodies come from.
+[[nodiscard]] Kinematics reversed(const Kinematics& k);
 
 /// Bounds of what `Kinematics` does not say, valid from its time until `until`.
 struct TurnBounds {
@@ -27,10 +33,21 @@ struct TurnBounds {
   double bend = 0.0;                    ///< of d: |d'' - 2 c| <= 2 bend, m/s^2
 };
 
+/// Bounds on an interval that ends at the time of the kinematics, for those that run backwards.
+[[nodiscard]] TurnBounds reversed(const TurnBounds& turn);
+
+/// What of the positions is kept against a half-space that is tilted and does not turn.
+enum class Positions {
+  whole,    ///< as everywhere
+  heights,  ///< only the height above it, in twice the precision: `Kinematics::d` is along its
+            ///< normal
+};
+
 /// The two motions of a query, in window time.
 class PairMotion {
  public:
-  PairMotion(const MovingShape& a, const MovingShape& b, const Window& window);
+  PairMotion(const MovingShape& a, const MovingShape& b, const Window& window,
+             Positions positions = Positions::whole);
 
   [[nodiscard]] double duration() const { return duration_; }
   /// Half extents of the rounded boxes (0 for spheres and half-spaces).
@@ -57,18 +74,25 @@ class PairMotion {
   void evaluate_translation(double t, Kinematics& k) const;
   /// Bounds on [t, t + horizon] (cut at the end of the window).
   [[nodiscard]] TurnBounds bounds(double t, double horizon) const;
-  /// Angle that both turn through in the window together at constant rates, rad (what a polynomial
-  /// turns through is not known beforehand; the budget of work bounds it).
-  [[nodiscard]] double total_turn() const;
+  /// True if a (b) turns at a constant rate.
+  [[nodiscard]] bool spins_a() const { return turns_a_ && rate_a_ > 0.0; }
+  [[nodiscard]] bool spins_b() const { return turns_b_ && rate_b_ > 0.0; }
   /// Upper bound of the speed of any point of b against any point of a on [t, t + horizon], m/s.
   [[nodiscard]] double speed_bound(const Kinematics& k, const TurnBounds& turn,
                                    double horizon) const;
+  /// Upper bound of the acceleration of any point of b against any point of a, as far as turning
+  /// goes on [t, t + horizon] and for origins in the rest of the window, m/s^2.
+  [[nodiscard]] double acceleration_bound(const Kinematics& k, double horizon) const;
   /// When `length` is covered at `speed` and what bends the motions, s; infinite or NaN: never. (A
   /// pair that hardly approaches may be through each other by the time that its speed alone would
   /// take.)
   [[nodiscard]] double time_to_cover(double length, double speed, const Kinematics& k) const;
 
  private:
+  void subtract_positions();
+  void subtract_heights();
+  void add_rotation_errors();
+
   const Motion* motion_a_;
   const Motion* motion_b_;
   double s_a_;  ///< local time of a at the start of the window

@@ -28,11 +28,11 @@ struct QuadraticGap {
 
 /// What the first descent of a gap through zero looks like.
 enum class Descent {
-  none,      ///< the gap stays positive (or, from touch, never comes back)
+  none,      ///< the gap stays positive, errors included (or, from touch, never comes back)
   found,     ///< positive before t_lo (after leaving, if it starts in touch), negative at t_hi
   in_touch,  ///< starts within `touch` of zero and does not leave: approaching
   sliding,   ///< starts within `touch` of zero and stays there
-  grazing,   ///< its least value, between t_lo and t_hi, is zero to roundoff
+  grazing,   ///< between t_lo and t_hi its sign is not known: zero to roundoff
   inside,    ///< starts below -touch
 };
 struct FirstDescent {

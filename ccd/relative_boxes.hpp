@@ -49,8 +49,10 @@ struct AxisSeparation {
 [[nodiscard]] Vector3 axis_normal(const RelativeBoxes& boxes, const AxisSeparation& axis);
 
 /// Do two boxes overlap (touching included)? Nothing is added to |R|; an edge pair separates only
-/// beyond its rounding error.
+/// beyond the rounding error, of nearly parallel edges that along the unit direction.
 [[nodiscard]] bool boxes_overlap(const RelativeBoxes& boxes);
+/// Are they apart by more than the rounding error of any separation?
+[[nodiscard]] bool boxes_apart(const RelativeBoxes& boxes);
 
 enum class Verdict { separated, overlapping, undecided };
 /// The same question proven: `separated` and `overlapping` hold for the real numbers that the
@@ -63,5 +65,11 @@ enum class Verdict { separated, overlapping, undecided };
 [[nodiscard]] Verdict classify(const RelativeBoxes& boxes, int& axis);
 [[nodiscard]] Verdict classify(const Vector3& half_a, const Matrix3& R_WA, const Vector3& half_b,
                                const Matrix3& R_WB, const Vector3& d_W);
+
+/// Are all fifteen separations, edge pairs unnormalised, proven below -error (m)? `error` bounds
+/// what the arguments themselves may be off by.
+[[nodiscard]] bool all_separations_below(const Vector3& half_a, const Matrix3& R_WA,
+                                         const Vector3& half_b, const Matrix3& R_WB,
+                                         const Vector3& d_W, double error);
 
 }  // namespace kairos::ccd

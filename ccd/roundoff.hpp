@@ -29,6 +29,17 @@ struct Exact {
   return {product, std::fma(a, b, -product)};
 }
 
+/// Sum and product of numbers in twice the precision, off by at most 8 u^2 of themselves (of the
+/// terms, where a sum cancels) [Dekker1971].
+[[nodiscard]] inline Exact sum(Exact a, Exact b) {
+  const Exact high = two_sum(a.value, b.value);
+  return two_sum(high.value, high.lost + (a.lost + b.lost));
+}
+[[nodiscard]] inline Exact product(Exact a, Exact b) {
+  const Exact high = two_product(a.value, b.value);
+  return two_sum(high.value, high.lost + (a.value * b.lost + a.lost * b.value));
+}
+
 /// a b - c d with an error of at most 2 ulp, by Kahan's method [Jeannerod2013].
 [[nodiscard]] inline double difference_of_products(double a, double b, double c, double d) {
   const double cd = c * d;

@@ -4,6 +4,7 @@
 #include "ccd/closed_form.hpp"
 #include "ccd/contact_manifold.hpp"
 #include "ccd/pair_overlap.hpp"
+#include "ccd/query_check.hpp"
 #include "ccd/swept_box.hpp"
 
 #include <utility>
@@ -33,11 +34,13 @@ TimeOfImpact exchanged(TimeOfImpact toi) {
 
 bool ShapeDetector::overlaps(const Shape& a, const Pose& pose_a, const Shape& b,
                              const Pose& pose_b) const {
+  check_poses(a, pose_a, b, pose_b);
   return shapes_overlap(a, pose_a, b, pose_b);
 }
 
 Overlap ShapeDetector::overlap(const Shape& a, const Pose& pose_a, const Shape& b,
                                const Pose& pose_b) const {
+  check_poses(a, pose_a, b, pose_b);
   return measure_overlap(a, pose_a, b, pose_b);
 }
 
@@ -48,6 +51,7 @@ ContactManifold ShapeDetector::manifold(const Shape& a, const Pose& pose_a, cons
 
 TimeOfImpact ShapeDetector::time_of_impact(const MovingShape& a, const MovingShape& b,
                                            const Window& window, double tolerance) const {
+  check_query(a, b, window, tolerance);
   if (both_half_spaces(a.shape, b.shape)) {
     return never(window);
   }
@@ -57,6 +61,7 @@ TimeOfImpact ShapeDetector::time_of_impact(const MovingShape& a, const MovingSha
 
 TimeOfImpact ShapeDetector::time_of_separation(const MovingShape& a, const MovingShape& b,
                                                const Window& window, double tolerance) const {
+  check_query(a, b, window, tolerance);
   if (both_half_spaces(a.shape, b.shape)) {
     return never(window);
   }
@@ -69,6 +74,7 @@ TimeOfImpact ShapeDetector::time_of_separation(const MovingShape& a, const Movin
 
 bool ShapeDetector::swept_overlap(const MovingShape& a, const MovingShape& b,
                                   const Window& window) const {
+  check_query(a, b, window, 0.0);
   return in_order(a.shape, b.shape) ? swept_shapes_overlap(a, b, window)
                                     : swept_shapes_overlap(b, a, window);
 }

@@ -1,9 +1,12 @@
 #include "ccd/sphere_plane.hpp"
 
+#include "ccd/closed_form.hpp"
 #include "ccd/descent_answer.hpp"
-#include "ccd/rotation_matrix.hpp"
+#include "ccd/plane_normal.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace kairos::ccd {
 namespace {
@@ -16,36 +19,45 @@ struct Projection {
   double e0 = 0.0, e1 = 0.0, e2 = 0.0;
 };
 
-/// Along an axis exactly (nothing is rounded), or along any n: off by 8 u for a rotation (of
-/// three coordinates) and 3 u for each product.
+/// Along an axis exactly (only a difference is rounded), or along any n, known in twice the
+/// precision.
 struct AlongAxis {
   int axis;
   double sign;
   double operator()(const Vector3& x) const { return sign * x[axis]; }
-  double error(const Vector3& /*x*/) const { return 0.0; }
+  double error(double /*h*/, const Vector3& /*x*/) const { return 0.0; }
+  double difference(const Vector3& x, const Vector3& y) const { return sign * (x[axis] - y[axis]); }
+  double difference_error(double h, const Vector3& /*x*/, const Vector3& y) const {
+    return y[axis] == 0.0 ? 0.0 : u * std::abs(h);
+  }
 };
 struct Along {
-  const Vector3& n;
-  double operator()(const Vector3& x) const { return n.dot(x); }
-  double error(const Vector3& x) const { return 24.0 * u * x.lpNorm<1>(); }
+  const PlaneNormal& n;
+  double operator()(const Vector3& x) const { return n.height(x); }
+  double error(double h, const Vector3& x) const { return PlaneNormal::error(h, x.lpNorm<1>()); }
+  double difference(const Vector3& x, const Vector3& y) const { return n.height(x, y); }
+  double difference_error(double h, const Vector3& x, const Vector3& y) const {
+    return PlaneNormal::error(h, x.lpNorm<1>() + y.lpNorm<1>());
+  }
 };
 
 template <typename Direction>
 Projection project(const Polynomial<3>& p, const Direction& along) {
-  Projection q{along(p[0]), 0.0, 0.0, along.error(p[0])};
+  Projection q{along(p[0])};
+  q.e0 = along.error(q.c0, p[0]);
   if (p.degree() > 0) {
     q.c1 = along(p[1]);
-    q.e1 = along.error(p[1]);
+    q.e1 = along.error(q.c1, p[1]);
   }
   if (p.degree() > 1) {
     q.c2 = along(p[2]);
-    q.e2 = along.error(p[2]);
+    q.e2 = along.error(q.c2, p[2]);
   }
   return q;
 }
 
 void shift(Projection& q, double s) {
-  if (s == 0.0 || (q.c1 == 0.0 && q.c2 == 0.0)) {
+  if (s == 0.0 || (q.c1 == 0.0 && q.c2 == 0.0 && q.e1 == 0.0 && q.e2 == 0.0)) {
     return;
   }
   const double size = std::abs(s);
@@ -68,29 +80,26 @@ double difference(double x, double y, double& error) {
 template <typename Direction>
 QuadraticGap gap_along(const Motion& sphere, double s, const Motion& plane, double s_p,
                        double reach, const Direction& along) {
-  const Vector3 d = sphere.position[0] - plane.position[0];
   QuadraticGap gap;
   if (plane.position.degree() == 0) {
     Projection a = project(sphere.position, along);
-    a.c0 = along(d);
-    a.e0 = along.error(d) + (along(plane.position[0]) == 0.0 ? 0.0 : u * std::abs(a.c0));
+    a.c0 = along.difference(sphere.position[0], plane.position[0]);
+    a.e0 = along.difference_error(a.c0, sphere.position[0], plane.position[0]);
     shift(a, s);
     gap = {a.c0, a.c1, a.c2, a.e0, a.e1, a.e2};
   } else if (s == 0.0 && s_p == 0.0) {
-    Polynomial<3> relative = sphere.position;
-    relative.resize(std::max(relative.degree(), plane.position.degree()));
-    for (int k = 0; k <= plane.position.degree(); ++k) {
-      relative[k] -= plane.position[k];
+    double c[3] = {0.0, 0.0, 0.0};
+    double e[3] = {0.0, 0.0, 0.0};
+    const auto coefficient = [](const Polynomial<3>& p, int k) {
+      return k <= p.degree() ? Vector3(p[k]) : Vector3(Vector3::Zero());
+    };
+    for (int k = 0; k <= std::max(sphere.position.degree(), plane.position.degree()); ++k) {
+      const Vector3 x = coefficient(sphere.position, k);
+      const Vector3 y = coefficient(plane.position, k);
+      c[k] = along.difference(x, y);
+      e[k] = along.difference_error(c[k], x, y);
     }
-    const Projection r = project(relative, along);
-    const auto rounding = [](const Vector3& x) { return 2.0 * u * x.cwiseAbs().maxCoeff(); };
-    gap = {r.c0, r.c1, r.c2, r.e0 + rounding(d), r.e1, r.e2};
-    if (relative.degree() > 0) {
-      gap.e1 += rounding(relative[1]);
-    }
-    if (relative.degree() > 1) {
-      gap.e2 += rounding(relative[2]);
-    }
+    gap = {c[0], c[1], c[2], e[0], e[1], e[2]};
   } else {
     Projection a = project(sphere.position, along);
     Projection b = project(plane.position, along);
@@ -112,6 +121,7 @@ struct SphereAbovePlane {
   const Motion& plane;
   const Window& window;
   double radius;
+  bool along_axis;  ///< the normal is an axis of the world, exactly
   Vector3 n;
   QuadraticGap gap;
 
@@ -126,14 +136,14 @@ struct SphereAbovePlane {
     const double s = start_of(sphere, window);
     const double s_p = start_of(plane, window);
     const double reach = radius + (sphere.error_radius + plane.error_radius);
-    const bool turned = q[1] != 0.0 || q[2] != 0.0 || q[3] != 0.0;
-    n = turned ? Vector3(rotation_matrix(Quaternion(q[0], q[1], q[2], q[3])) * half_space.normal_B)
-               : half_space.normal_B;
+    const PlaneNormal normal(half_space.normal_B, q);
+    n = normal.rounded();
     int axis = 0;
-    if (n.cwiseAbs().maxCoeff(&axis) == 1.0 && (n.array() != 0.0).count() == 1) {
+    along_axis = normal.is_axis(axis);
+    if (along_axis) {
       gap = gap_along(sphere, s, plane, s_p, reach, AlongAxis{axis, n[axis]});
     } else {
-      gap = gap_along(sphere, s, plane, s_p, reach, Along{n});
+      gap = gap_along(sphere, s, plane, s_p, reach, Along{normal});
     }
   }
 
@@ -147,13 +157,16 @@ struct SphereAbovePlane {
     const Vector3 up = half_space_normal(half_space, {plane.position[0], plane.orientation(0.0)});
     const double first = toi.t_lo;
     double back = ulp(toi.t_lo);
-    for (int attempt = 0; attempt < 40; ++attempt) {
+    for (int attempt = 0; attempt < most_retreats; ++attempt) {
       centre = sphere.position(local_time(sphere, window, toi.t_lo));
       const Vector3 origin = plane.position.degree() == 0
                                  ? plane.position[0]
                                  : plane.position(local_time(plane, window, toi.t_lo));
       height = up.dot(centre - origin);
-      if (height > radius || toi.t_lo == 0.0 || toi.status == ToiStatus::overlapping) {
+      // Along an axis that is what anyone computes; along any other it is off by some roundings.
+      const double rounding = along_axis ? 0.0 : 8.0 * u * ((centre - origin).lpNorm<1>() + radius);
+      const double reach = radius + (sphere.error_radius + plane.error_radius);
+      if (height - reach > rounding || toi.t_lo == 0.0 || toi.status == ToiStatus::overlapping) {
         break;
       }
       toi.t_lo = std::max(0.0, first - back);

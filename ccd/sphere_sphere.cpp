@@ -3,6 +3,7 @@
 #include "ccd/closed_form.hpp"
 #include "ccd/descent_answer.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace kairos::ccd {
@@ -88,6 +89,15 @@ FirstDescent bracket(const DistanceGap& gap, double root, double limit) {
   return found;
 }
 
+/// No velocity but what rounding may hide, and that is at most this `speed`.
+FirstDescent at_relative_rest(const DistanceGap& gap, double start, bool in_touch, double speed) {
+  if (in_touch) {
+    return {Descent::sliding, 0.0, infinity};
+  }
+  return speed > 0.0 ? FirstDescent{Descent::grazing, (start - gap.e0) / speed, infinity}
+                     : FirstDescent{};
+}
+
 FirstDescent first_descent(const DistanceGap& gap, double touch) {
   const double approach = gap.d.dot(gap.v);
   const double distance = gap.d.norm();
@@ -95,28 +105,29 @@ FirstDescent first_descent(const DistanceGap& gap, double touch) {
   if (start < -touch) {
     return {Descent::inside, 0.0, 0.0};
   }
-  if (start <= gap.error(0.0)) {
-    if (approach < 0.0) {
-      return {Descent::in_touch, 0.0, 0.0};
-    }
-    return {gap.v.isZero(0.0) ? Descent::sliding : Descent::none, 0.0, infinity};
-  }
-  if (!(approach < 0.0)) {
-    return {Descent::none, 0.0, 0.0};
-  }
-  // The nearest approach |d x v| / |v| against the reach decides; Lagrange's identity turns the
-  // discriminant into (reach - miss)(reach + miss) |v|^2, which does not cancel.
+  const bool in_touch = start <= gap.error(0.0);
   const double speed = gap.v.norm();
-  const double nearest_at = -approach / (speed * speed);
-  const double miss = gap.d.cross(gap.v).norm() / speed;
+  // Nearest, errors that grow with time included: where the distance grows as they do (eq. 15).
+  const double nearest_at = std::max(0.0, (gap.e1 * distance - approach) / (speed * speed));
+  if (!std::isfinite(nearest_at)) {
+    return at_relative_rest(gap, start, in_touch, gap.e1 + speed);
+  }
+  const double miss = approach < 0.0 ? gap.d.cross(gap.v).norm() / speed : distance;
   const double error = gap.error(nearest_at) + 8.0 * u * distance;
-  if (miss > gap.reach + error) {
+  if (in_touch) {
+    // Tangential: it leaves, and is never deeper than rounding, whatever the sign of the approach.
+    const bool leaves = !(approach < 0.0) || miss - gap.reach >= -(touch + error);
+    return {leaves ? Descent::none : Descent::in_touch, 0.0, 0.0};
+  }
+  if (miss > gap.reach + error || (!(approach < 0.0) && gap(nearest_at) > gap.error(nearest_at))) {
     return {Descent::none, 0.0, 0.0};
   }
-  if (miss >= gap.reach - error) {
+  if (miss >= gap.reach - error || !(approach < 0.0)) {
     const double t_lo = last_proven(gap, 0.0, nearest_at);
     return {Descent::grazing, t_lo, 2.0 * nearest_at - t_lo};
   }
+  // Lagrange's identity turns the discriminant into (reach - miss)(reach + miss) |v|^2, which does
+  // not cancel.
   const double inwards = std::sqrt((gap.reach - miss) * (gap.reach + miss));
   double root = start * (start + 2.0 * gap.reach) / (-approach + speed * inwards);
   root -= gap(root) / gap.rate(root);  // the distance itself is better conditioned than its square

@@ -63,6 +63,24 @@ double turning_extent(const Box& box, const Motion& motion, double s0, double s1
   return std::min(extent, box.half_extents.norm()) * (1.0 + 8.0 * u);
 }
 
+/// Bounded on one side if n is its normal but for 4 u: a normal along an axis that was computed, of
+/// a body that is turned by 90 degrees, say, is off by that. At a point x such a tilt moves the
+/// surface by 8 u |x|_1 at most, and by as much every reach of a body is rounded outwards. Tilted
+/// by more, a half-space reaches everywhere.
+Reach half_space_reach(const HalfSpace& half_space, const Motion& motion, double s0, double s1,
+                       const Vector3& n) {
+  const Vector3 normal = half_space_normal(half_space, motion.pose(s0));
+  const double side = normal.dot(n) < 0.0 ? -1.0 : 1.0;
+  if ((normal - side * n).lpNorm<Eigen::Infinity>() > 4.0 * u) {
+    return {-infinity, infinity};
+  }
+  const Reach surface = translation_reach(motion.position, s0, s1, n);
+  const double size = motion.position(s0).lpNorm<1>() + motion.position(s1).lpNorm<1>();
+  const double margin = motion.error_radius + (normal == side * n ? 0.0 : 8.0 * u * size);
+  return side > 0.0 ? Reach{-infinity, surface.upper + margin}
+                    : Reach{surface.lower - margin, infinity};
+}
+
 Vector3 any_perpendicular(const Vector3& x) {
   int least = 0;
   x.cwiseAbs().minCoeff(&least);
@@ -78,14 +96,8 @@ double local(const Motion& motion, const Window& window, double t) {
 Reach swept_reach(const Shape& shape, const Motion& motion, double s0, double s1,
                   const Vector3& n) {
   if (const auto* half_space = std::get_if<HalfSpace>(&shape)) {
-    const Vector3 normal = half_space_normal(*half_space, motion.pose(s0));
-    if (motion.rotation == RotationKind::fixed && normal.dot(n) == 1.0) {
-      return {-infinity, translation_reach(motion.position, s0, s1, n).upper + motion.error_radius};
-    }
-    if (motion.rotation == RotationKind::fixed && normal.dot(n) == -1.0) {
-      return {translation_reach(motion.position, s0, s1, n).lower - motion.error_radius, infinity};
-    }
-    return {-infinity, infinity};
+    return motion.rotation == RotationKind::fixed ? half_space_reach(*half_space, motion, s0, s1, n)
+                                                  : Reach{-infinity, infinity};
   }
   Reach reach = translation_reach(motion.position, s0, s1, n);
   const auto* box = std::get_if<Box>(&shape);

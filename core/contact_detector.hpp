@@ -32,7 +32,9 @@ struct DetectorInfo {
   bool at_step_ends = false;
 };
 
-/// Port: are these two touching, and since when? Stateless; safe to share between threads.
+/// Port: are these two touching, and since when? Stateless; safe to share between threads. What
+/// cannot be answered (an extent that is none, a quaternion that is not unit, a window longer than
+/// a motion, a number that is none) throws `std::invalid_argument`.
 class ContactDetector {
  public:
   virtual ~ContactDetector() = default;

@@ -11,7 +11,11 @@ enum class ToiStatus {
   separated,    ///< no contact in the window (proven, if the detector proves)
   impact,       ///< contact by t_hi; none before t_lo
   overlapping,  ///< the shapes overlap at the start of the window already
-  undecided,    ///< within tolerance at t_lo, and neither contact nor its absence proven by t_hi
+  /// Nothing is proven beyond t_lo. `gap` there within the tolerance: rounding hides whether they
+  /// touch in [t_lo, t_hi]; if it is a start in touch (t_lo 0), they slide. A greater gap: the work
+  /// that a query may take is done, and t_hi is t_lo. In both cases a query that begins at t_hi
+  /// goes on from there.
+  undecided,
 };
 [[nodiscard]] std::string_view to_string(ToiStatus status);
 
@@ -19,7 +23,7 @@ enum class ToiStatus {
 struct TimeOfImpact {
   ToiStatus status = ToiStatus::separated;
   double t_lo = 0.0;                    ///< no contact in [0, t_lo), s
-  double t_hi = 0.0;                    ///< contact by t_hi (status impact), s
+  double t_hi = 0.0;                    ///< contact by t_hi (impact); where the search stopped, s
   double gap = 0.0;                     ///< distance at t_lo, from below, m (0 when overlapping)
   Vector3 normal = Vector3::Zero();     ///< unit, from a to b, world frame, at t_lo
   Vector3 witness_a = Vector3::Zero();  ///< nearest point of a at t_lo, world frame, m

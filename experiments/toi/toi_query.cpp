@@ -1,5 +1,6 @@
 #include "experiments/toi/toi_query.hpp"
 
+#include "ccd/query_check.hpp"
 #include "core/error.hpp"
 #include "core/reading/csv.hpp"
 
@@ -19,10 +20,9 @@ constexpr std::array<std::string_view, 19> number_names{"hx", "hy", "hz", "px", 
                                                         "ay", "az", "wx", "wy", "wz"};
 enum NumberIndex : std::size_t { h = 0, p = 3, q = 6, v = 10, a = 13, w = 16 };
 
-/// Squares of lengths, and of what they come to in the window, must be finite; those of gaps far
-/// below the smallest extent must not underflow.
-constexpr double largest_magnitude = 1e150;
-constexpr double smallest_extent = 1e-120;
+/// What the detectors accept.
+constexpr double largest_magnitude = ccd::greatest_size;
+constexpr double smallest_extent = ccd::least_extent;
 
 double read_number(std::string_view field, std::string_view column) {
   std::string_view text = unquoted(field);

@@ -56,10 +56,19 @@ TEST_CASE("case 4: 4e5 rad within a step", "[ccd][cases]") {
   Query miss = hit;
   miss.motion_a = moving(pose({1.2, 0, 0}), {0, 1, 0});
   CHECK(kept(miss, 2000).status == ToiStatus::separated);
-  // Beyond 4e5 rad and within reach of the spinning ends: undecided, after the work allowed.
+  // In the waist of the double cone that the spinning stick passes: undecided, after the work
+  // allowed, and proven apart that far.
+  miss.motion_a = moving(pose({0, 0.5, 0}), zero);
+  miss.motion_b = moving(pose(zero), zero, 1e9 * Vector3(1, 0, 1));
+  const TimeOfImpact waist = miss.ask(*certified);
+  CHECK(waist.status == ToiStatus::undecided);
+  CHECK(waist.t_lo > 0.0);
+  CHECK(waist.t_hi == waist.t_lo);
+  CHECK(waist.gap > 0.1);
+  // Above the cone, apart along the axis of the spin.
   miss.motion_a = moving(pose({0, 0, 0.5}), zero);
   miss.motion_b = moving(pose(zero), zero, 1e9 * Vector3(0.3, 0, 1));
-  CHECK(miss.ask(*certified).status == ToiStatus::undecided);
+  CHECK(miss.ask(*certified).status == ToiStatus::separated);
   // Out of reach, or separated along the axis of the spin: no matter how fast.
   miss.motion_a = moving(pose({0, 0, 5}), zero);
   CHECK(miss.ask(*certified).status == ToiStatus::separated);

@@ -307,6 +307,8 @@ TEST_CASE("linear: late or early by the curvature of the gap, blind to what is w
   CHECK(ccd::make_certified()
             ->time_of_impact({ball, bullet}, {wall, resting}, {{}, 1.0}, 0.0)
             .status == ToiStatus::impact);
-  CHECK(linear->time_of_impact({ball, bullet}, {wall, resting}, {{}, inf}, 0.0).status ==
+  Motion endless = bullet;
+  endless.duration = inf;
+  CHECK(linear->time_of_impact({ball, endless}, {wall, resting}, {{}, inf}, 0.0).status ==
         ToiStatus::undecided);
 }

@@ -1,0 +1,125 @@
+#include "ccd/query_check.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace kairos::ccd {
+namespace {
+
+constexpr double unit_tolerance = 1e-6;     // physical: what a person's rounding may cost
+constexpr double normal_tolerance = 1e-14;  // roundings of who made it unit, and of the square
+constexpr double time_tolerance = 1e-12;
+
+[[noreturn]] void refuse(const char* body, const std::string& what) {
+  throw std::invalid_argument(fmt::format("contact query: {}{}", body, what));
+}
+
+void check_extent(const char* body, double extent) {
+  if (!(extent >= least_extent && extent <= greatest_size)) {
+    refuse(body, fmt::format("{} is no extent; allowed: from {} to {} (m)", extent, least_extent,
+                             greatest_size));
+  }
+}
+
+void check_shape(const char* body, const Shape& shape) {
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+    check_extent(body, sphere->radius);
+  } else if (const auto* box = std::get_if<Box>(&shape)) {
+    for (int k = 0; k < 3; ++k) {
+      check_extent(body, box->half_extents[k]);
+    }
+  } else {
+    const double square = std::get<HalfSpace>(shape).normal_B.squaredNorm();
+    if (!(std::abs(square - 1.0) <= normal_tolerance)) {
+      refuse(body, fmt::format("the normal has length {}; allowed: 1", std::sqrt(square)));
+    }
+  }
+}
+
+void check_size(const char* body, const char* name, double size) {
+  if (size > greatest_size && std::isfinite(size)) {
+    refuse(body, fmt::format("the {} come to {}; allowed: up to {}", name, size, greatest_size));
+  }
+}
+
+void check_unit(const char* body, double square) {
+  // | |q| - 1 | <= tolerance, to first order.
+  if (std::abs(square - 1.0) > 2.0 * unit_tolerance && std::isfinite(square)) {
+    refuse(body, fmt::format("the quaternion has length {}; allowed: 1 within {}",
+                             std::sqrt(square), unit_tolerance));
+  }
+}
+
+void check_rotation(const char* body, const Motion& motion) {
+  const double square = motion.quaternion[0].squaredNorm();
+  if (motion.rotation != RotationKind::polynomial) {
+    check_unit(body, square);
+    check_size(body, "rates of turn", motion.rotation_rate.lpNorm<1>());
+    return;
+  }
+  if (square == 0.0) {
+    refuse(body, "the quaternion is 0; allowed: any other polynomial");
+  }
+  double size = 0.0;
+  for (int k = 0; k <= motion.quaternion.degree(); ++k) {
+    size += motion.quaternion[k].lpNorm<1>();
+  }
+  check_size(body, "coefficients of the quaternion", size);
+}
+
+void check_motion(const char* body, const Motion& motion, const Window& window) {
+  if (motion.error_radius < 0.0 || motion.error_radius > greatest_size) {
+    refuse(body, fmt::format("the error radius is {}; allowed: from 0 to {} (m)",
+                             motion.error_radius, greatest_size));
+  }
+  check_rotation(body, motion);
+  const double s0 = window.start - motion.start;
+  const double s1 = s0 + window.duration;
+  const double slack = time_tolerance * (std::abs(s0) + (std::isfinite(s1) ? s1 : 0.0));
+  if (!(s0 >= -slack) || !(s1 <= motion.duration + slack)) {
+    refuse(body, fmt::format("the window is from {} to {} s of a motion that lasts {} s; allowed: "
+                             "within the motion",
+                             s0, s1, motion.duration));
+  }
+  const double s = std::isfinite(s1) ? s1 : 0.0;
+  double reach = 0.0;
+  for (int k = motion.position.degree(); k >= 0; --k) {
+    const double size = motion.position[k].norm();
+    check_size(body, "coefficients of the position", size);
+    reach = reach * s + size;
+  }
+  check_size(body, "coordinates", reach * (1.0 - 1e-12));  // summed by others in another order
+}
+
+void check_pose(const char* body, const Pose& pose) {
+  check_unit(body, pose.orientation.squaredNorm());
+  check_size(body, "coordinates", pose.position.lpNorm<1>());
+}
+
+}  // namespace
+
+void check_query(const MovingShape& a, const MovingShape& b, const Window& window,
+                 double tolerance) {
+  if (!(window.duration >= 0.0)) {
+    refuse("", fmt::format("the window lasts {} s; allowed: >= 0", window.duration));
+  }
+  if (!(tolerance >= 0.0)) {
+    refuse("", fmt::format("the tolerance is {} m; allowed: >= 0", tolerance));
+  }
+  check_shape("a: ", a.shape);
+  check_shape("b: ", b.shape);
+  check_motion("a: ", a.motion, window);
+  check_motion("b: ", b.motion, window);
+}
+
+void check_poses(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
+  check_shape("a: ", a);
+  check_shape("b: ", b);
+  check_pose("a: ", pose_a);
+  check_pose("b: ", pose_b);
+}
+
+}  // namespace kairos::ccd
