@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -12,6 +13,7 @@ namespace {
 constexpr double unit_tolerance = 1e-6;     // physical: what a person's rounding may cost
 constexpr double normal_tolerance = 1e-14;  // roundings of who made it unit, and of the square
 constexpr double time_tolerance = 1e-12;
+constexpr double sum_rounding = 1e-12;  // of a sum that others make in another order
 
 [[noreturn]] void refuse(const char* body, const std::string& what) {
   throw std::invalid_argument(fmt::format("contact query: {}{}", body, what));
@@ -39,12 +41,6 @@ void check_shape(const char* body, const Shape& shape) {
   }
 }
 
-void check_size(const char* body, const char* name, double size) {
-  if (size > greatest_size && std::isfinite(size)) {
-    refuse(body, fmt::format("the {} come to {}; allowed: up to {}", name, size, greatest_size));
-  }
-}
-
 void check_unit(const char* body, double square) {
   // | |q| - 1 | <= tolerance, to first order.
   if (std::abs(square - 1.0) > 2.0 * unit_tolerance && std::isfinite(square)) {
@@ -57,17 +53,9 @@ void check_rotation(const char* body, const Motion& motion) {
   const double square = motion.quaternion[0].squaredNorm();
   if (motion.rotation != RotationKind::polynomial) {
     check_unit(body, square);
-    check_size(body, "rates of turn", motion.rotation_rate.lpNorm<1>());
-    return;
-  }
-  if (square == 0.0) {
+  } else if (square == 0.0) {
     refuse(body, "the quaternion is 0; allowed: any other polynomial");
   }
-  double size = 0.0;
-  for (int k = 0; k <= motion.quaternion.degree(); ++k) {
-    size += motion.quaternion[k].lpNorm<1>();
-  }
-  check_size(body, "coefficients of the quaternion", size);
 }
 
 void check_motion(const char* body, const Motion& motion, const Window& window) {
@@ -84,19 +72,26 @@ void check_motion(const char* body, const Motion& motion, const Window& window) 
                              "within the motion",
                              s0, s1, motion.duration));
   }
-  const double s = std::isfinite(s1) ? s1 : 0.0;
-  double reach = 0.0;
-  for (int k = motion.position.degree(); k >= 0; --k) {
-    const double size = motion.position[k].norm();
-    check_size(body, "coefficients of the position", size);
-    reach = reach * s + size;
-  }
-  check_size(body, "coordinates", reach * (1.0 - 1e-12));  // summed by others in another order
 }
 
-void check_pose(const char* body, const Pose& pose) {
-  check_unit(body, pose.orientation.squaredNorm());
-  check_size(body, "coordinates", pose.position.lpNorm<1>());
+/// sum |c_k| s^k: the polynomial is no larger up to s. High coefficients of short steps are large,
+/// and harmless; of an endless window the coefficients themselves are told.
+template <int N>
+double most_within(const Polynomial<N>& p, double s) {
+  double size = 0.0;
+  for (int k = p.degree(); k >= 0; --k) {
+    size = size * (std::isfinite(s) ? s : 1.0) + p[k].norm();
+  }
+  return size * (1.0 - sum_rounding);
+}
+
+/// Is the motion known, and within `greatest_size`, up to the end of the window?
+bool motion_within_range(const Motion& motion, const Window& window) {
+  const double end = window.start - motion.start + window.duration;
+  const double turning = motion.rotation == RotationKind::polynomial
+                             ? most_within(motion.quaternion, end)
+                             : motion.rotation_rate.norm();
+  return most_within(motion.position, end) <= greatest_size && turning <= greatest_size;
 }
 
 }  // namespace
@@ -115,11 +110,15 @@ void check_query(const MovingShape& a, const MovingShape& b, const Window& windo
   check_motion("b: ", b.motion, window);
 }
 
+bool within_range(const MovingShape& a, const MovingShape& b, const Window& window) {
+  return motion_within_range(a.motion, window) && motion_within_range(b.motion, window);
+}
+
 void check_poses(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
   check_shape("a: ", a);
   check_shape("b: ", b);
-  check_pose("a: ", pose_a);
-  check_pose("b: ", pose_b);
+  check_unit("a: ", pose_a.orientation.squaredNorm());
+  check_unit("b: ", pose_b.orientation.squaredNorm());
 }
 
 }  // namespace kairos::ccd

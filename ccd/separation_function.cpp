@@ -249,7 +249,8 @@ double longest_step(double high, const Allowed& allowed_within) {
   // Where bounds on the longest overflow, shorter ones may not.
   double low = step > 0.0 ? step : high * 1e-18;
   for (int attempt = 0; attempt < most_horizons && low < well_used * high; ++attempt) {
-    const double reach = std::sqrt(low) * std::sqrt(high);
+    // The geometric mean, from a ratio: the same bits in every unit of time.
+    const double reach = high * std::sqrt(low / high);
     const double allowed = allowed_within(reach);
     step = std::max(step, allowed);
     (allowed < reach ? high : low) = reach;

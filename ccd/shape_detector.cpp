@@ -7,6 +7,7 @@
 #include "ccd/query_check.hpp"
 #include "ccd/swept_box.hpp"
 
+#include <limits>
 #include <utility>
 
 namespace kairos::ccd {
@@ -21,6 +22,14 @@ bool both_half_spaces(const Shape& a, const Shape& b) {
 TimeOfImpact never(const Window& window) {
   TimeOfImpact toi;
   toi.t_lo = toi.t_hi = window.duration;
+  return toi;
+}
+
+/// Nothing is proven.
+TimeOfImpact unknown() {
+  TimeOfImpact toi;
+  toi.status = ToiStatus::undecided;
+  toi.gap = std::numeric_limits<double>::infinity();
   return toi;
 }
 
@@ -55,6 +64,9 @@ TimeOfImpact ShapeDetector::time_of_impact(const MovingShape& a, const MovingSha
   if (both_half_spaces(a.shape, b.shape)) {
     return never(window);
   }
+  if (!within_range(a, b, window)) {
+    return unknown();
+  }
   return in_order(a.shape, b.shape) ? ordered_time_of_impact(a, b, window, tolerance)
                                     : exchanged(ordered_time_of_impact(b, a, window, tolerance));
 }
@@ -64,6 +76,9 @@ TimeOfImpact ShapeDetector::time_of_separation(const MovingShape& a, const Movin
   check_query(a, b, window, tolerance);
   if (both_half_spaces(a.shape, b.shape)) {
     return never(window);
+  }
+  if (!within_range(a, b, window)) {
+    return unknown();
   }
   const auto ordered = [&](const MovingShape& first, const MovingShape& second) {
     const auto toi = closed_form_separation(first, second, window);
@@ -75,6 +90,9 @@ TimeOfImpact ShapeDetector::time_of_separation(const MovingShape& a, const Movin
 bool ShapeDetector::swept_overlap(const MovingShape& a, const MovingShape& b,
                                   const Window& window) const {
   check_query(a, b, window, 0.0);
+  if (!within_range(a, b, window)) {
+    return true;  // nothing is proven free
+  }
   return in_order(a.shape, b.shape) ? swept_shapes_overlap(a, b, window)
                                     : swept_shapes_overlap(b, a, window);
 }

@@ -24,7 +24,11 @@ enum NumberIndex : std::size_t { h = 0, p = 3, q = 6, v = 10, a = 13, w = 16 };
 constexpr double largest_magnitude = ccd::greatest_size;
 constexpr double smallest_extent = ccd::least_extent;
 
-double read_number(std::string_view field, std::string_view column) {
+/// Squares of times are finite.
+constexpr double longest_duration = 1e150;
+
+double read_number(std::string_view field, std::string_view column,
+                   double largest = largest_magnitude) {
   std::string_view text = unquoted(field);
   if (text.starts_with('+')) {
     text.remove_prefix(1);
@@ -38,10 +42,10 @@ double read_number(std::string_view field, std::string_view column) {
   if (error != std::errc()) {
     throw BadField{column, fmt::format("'{}' is beyond the range of a double", field)};
   }
-  if (!(std::abs(value) <= largest_magnitude)) {
+  if (!(std::abs(value) <= largest)) {
     throw BadField{column, fmt::format("'{}' is not allowed; allowed: finite numbers of magnitude "
                                        "up to {}",
-                                       field, largest_magnitude)};
+                                       field, largest)};
   }
   return value;
 }
@@ -186,7 +190,7 @@ ToiQuery ToiQueryFormat::read(std::string_view row, Scratch& scratch) const {
   }
   ToiQuery query;
   query.id = fields[id_];
-  query.duration = read_number(fields[duration_], "duration");
+  query.duration = read_number(fields[duration_], "duration", longest_duration);
   if (query.duration < 0.0) {
     throw BadField{"duration",
                    fmt::format("{} is negative; allowed: numbers >= 0 (s)", query.duration)};

@@ -258,7 +258,7 @@ TEST_CASE("case 42: subnormal and huge inputs", "[ccd][cases]") {
               moving(pose({4e59, 0, 0}), {-4e59, 0, 0}), 1.0};
   CHECK(kept(large).t_lo == Approx(0.5));
   large.motion_b = moving(pose({4e150, 0, 0}), {-4e150, 0, 0});  // powers of these overflow
-  CHECK_THROWS_AS(large.ask(*certified), std::invalid_argument);
+  CHECK(large.ask(*certified).status == ToiStatus::undecided);
   Query sized{box(1e9, 1e9, 1e9), box(1e9, 1e9, 1e9), still(pose(zero)),
               moving(pose({4e9, 0, 0}), {-4e9, 0, 0}, {1, 1, 1}), 1.0};
   CHECK(kept(sized).status == ToiStatus::impact);
