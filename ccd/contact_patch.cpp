@@ -129,10 +129,13 @@ ContactPatch on_face(const Vector3& reference, int axis, double sign, const Vect
   Polygon face = incident.polygon();
   for (const int k : {(axis + 1) % 3, (axis + 2) % 3}) {
     for (const double s : {-1.0, 1.0}) {
-      const Polygon smaller = clipped(face, k, s, reference[k]);
-      if (smaller.size > 0) {  // beyond an edge of the reference face: keep the nearest part
-        face = smaller;
+      // Beyond an edge of the reference face, by rounding where two edges meet: the nearest part.
+      double nearest = infinity;
+      for (int i = 0; i < face.size; ++i) {
+        nearest = std::min(nearest, s * face[i][k]);
       }
+      const bool beyond = nearest > reference[k];
+      face = clipped(face, k, s, beyond ? nearest + margin : reference[k]);
     }
   }
   double lowest = infinity;
@@ -183,19 +186,51 @@ ContactPatch on_edges(const RelativeBoxes& s, const AxisSeparation& axis) {
   return {nearest.on_a, nearest.on_b};
 }
 
+ContactPatch on_face_of_a(const RelativeBoxes& s, int axis, double sign) {
+  return on_face(s.half_a, axis, sign, s.half_b, s.d_A, s.axes_A);
+}
+
+ContactPatch on_face_of_b(const RelativeBoxes& s, int axis, double sign) {
+  const Matrix3 R = s.axes_A.transpose();
+  const ContactPatch patch = on_face(s.half_b, axis, -sign, s.half_a, -(R * s.d_A), R);
+  return {s.d_A + s.axes_A * patch.on_b, s.d_A + s.axes_A * patch.on_a};
+}
+
+double length_of(const ContactPatch& patch) { return (patch.on_b - patch.on_a).norm(); }
+
+/// Two edges across each other; or the faces that they border, where their direction is that of a
+/// face within rounding: then any two edges of these give it, also such as do not meet.
+ContactPatch on_edges_or_faces(const RelativeBoxes& s, const AxisSeparation& axis) {
+  const ContactPatch edges = on_edges(s, axis);
+  const double margin = 1024.0 * unit_roundoff * (s.half_a.sum() + s.half_b.sum());
+  const Vector3 n = axis_normal(s, axis);
+  const Vector3 n_B = s.axes_A.transpose() * n;
+  for (int k = 0; k < 3; ++k) {
+    for (const bool a : {true, false}) {
+      const double along = a ? n[k] : n_B[k];
+      if (1.0 - std::abs(along) > 64.0 * unit_roundoff) {
+        continue;
+      }
+      const double sign = along > 0.0 ? 1.0 : -1.0;
+      const ContactPatch face = a ? on_face_of_a(s, k, sign) : on_face_of_b(s, k, sign);
+      if (length_of(face) <= length_of(edges) + margin) {
+        return face;
+      }
+    }
+  }
+  return edges;
+}
+
 }  // namespace
 
 ContactPatch contact_patch(const RelativeBoxes& s, const AxisSeparation& axis) {
   if (axis.axis < 3) {
-    return on_face(s.half_a, axis.axis, axis.sign, s.half_b, s.d_A, s.axes_A);
+    return on_face_of_a(s, axis.axis, axis.sign);
   }
   if (axis.axis < 6) {
-    const Matrix3 R = s.axes_A.transpose();
-    const Vector3 d = -(R * s.d_A);
-    const ContactPatch patch = on_face(s.half_b, axis.axis - 3, -axis.sign, s.half_a, d, R);
-    return {s.d_A + s.axes_A * patch.on_b, s.d_A + s.axes_A * patch.on_a};
+    return on_face_of_b(s, axis.axis - 3, axis.sign);
   }
-  return on_edges(s, axis);
+  return on_edges_or_faces(s, axis);
 }
 
 PatchCorners patch_corners(const RelativeBoxes& s, const AxisSeparation& axis) {

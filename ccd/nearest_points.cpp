@@ -27,10 +27,13 @@ NearestPoints nearest_of_segments(const Vector3& p, const Vector3& u, double su,
   const double cosine = u.dot(v);
   const double along_u = u.dot(r);
   const double along_v = v.dot(r);
-  const double sine_squared = u.cross(v).squaredNorm();
+  const Vector3 across = u.cross(v);
+  const double sine_squared = across.squaredNorm();
   double s = 0.0;
   if (sine_squared > 0.0) {
-    s = std::clamp((along_u - cosine * along_v) / sine_squared, -su, su);
+    // By cross products: an error of roundoff / sine. The usual difference of along_u and
+    // cosine * along_v has roundoff / sine^2.
+    s = std::clamp(r.cross(v).dot(across) / sine_squared, -su, su);
   } else {
     s = std::clamp(along_u, -su, su);
   }

@@ -203,3 +203,37 @@ TEST_CASE("mended: what is no query is refused", "[ccd][mended]") {
   bad.error_radius = -1e-9;
   CHECK_THROWS_AS(asked(unit_ball, bad, 1.0), std::invalid_argument);
 }
+
+TEST_CASE("mended: boxes that meet edge to edge, or flat and turning, touch where they say",
+          "[ccd][mended]") {
+  // Cubes of one orientation that meet along their edges: a face of one, clipped by the other, is
+  // an edge or, by rounding, nothing. Flat faces: edges across each other have their direction too.
+  const Quaternion eighth(Eigen::AngleAxisd(0.25 * pi, Vector3(1, 1, 0).normalized()));
+  const double diagonal = 2.0 * std::sqrt(2.0);
+  const Vector3 way = eighth * Vector3(1, 1, 0).normalized();
+  const Motion turning = moving(pose(zero, Quaternion(Eigen::AngleAxisd(0.149, Vector3::UnitZ()))),
+                                zero, {0, 0, 0.3}, zero, 2.0);
+  const struct {
+    Shape a, b;
+    Motion motion_a, motion_b;
+  } cases[] = {
+      {box(1, 1, 1), box(1, 1, 1), moving(pose(zero, eighth), zero, zero, zero, 2.0),
+       moving(pose((diagonal + 1.6) * way, eighth), -1.66 * way, zero, zero, 2.0)},
+      {box(1.026, 0.211, 0.864), box(0.311, 0.162, 1.497), turning,
+       moving(pose({0, 0, 4.16}), {0, 0, -1.24}, zero, zero, 2.0)},
+  };
+  for (const auto& [a, b, motion_a, motion_b] : cases) {
+    const TimeOfImpact toi = certified->time_of_impact({a, motion_a}, {b, motion_b}, {{}, 2.0}, 0);
+    REQUIRE(toi.status == ToiStatus::impact);
+    // Ten times the tolerance, 1e-9 of an extent.
+    CHECK((toi.witness_b - toi.witness_a).norm() <= 1e-8);
+    const auto on_surface = [&](const Shape& shape, const Motion& motion, const Vector3& point) {
+      const Pose at = motion.pose(toi.t_lo);
+      const Vector3 local = at.orientation.conjugate() * (point - at.position);
+      const Vector3 beyond = local.cwiseAbs() - std::get<Box>(shape).half_extents;
+      return std::abs(beyond.maxCoeff()) <= 1e-8;
+    };
+    CHECK(on_surface(a, motion_a, toi.witness_a));
+    CHECK(on_surface(b, motion_b, toi.witness_b));
+  }
+}

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <ctime>
 #include <exception>
 #include <fstream>
@@ -73,6 +74,10 @@ class Session {
       return;
     }
     const double seconds = processor_time() - before;
+    if (answer.status == ToiStatus::undecided && std::isinf(answer.gap)) {  // beyond its range
+      tally.refuse(!family.extreme);
+      return;
+    }
     const Verdict verdict =
         family.parting ? judge_parting(query, answer) : judge(query, answer, *certified_);
     tally.add(answer, verdict, seconds);
