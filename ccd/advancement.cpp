@@ -466,8 +466,7 @@ void Advancement::add_nearest_points(TimeOfImpact& answer, const Look& at) const
       answer.witness_b = origin_a + R * nearest.on_b;
       return;
     }
-    const ContactPatch patch =
-        contact_patch(boxes, AxisSeparation{w.axis, w.gap * w.sine, w.sine, w.sign});
+    const ContactPatch patch = contact_patch(boxes, w.axis, w.sign, R.transpose() * w.n);
     answer.witness_a = origin_a + R * patch.on_a;
     answer.witness_b = origin_a + R * patch.on_b;
     return;

@@ -42,6 +42,15 @@ Polygon clipped(const Polygon& in, int axis, double sign, double limit) {
   return out;
 }
 
+/// The least sign * x[axis].
+double least(const Polygon& polygon, int axis, double sign) {
+  double least = infinity;
+  for (int i = 0; i < polygon.size; ++i) {
+    least = std::min(least, sign * polygon[i][axis]);
+  }
+  return least;
+}
+
 /// Centroid of the area, or of the longest extent where there is none (an edge, a corner).
 Vector3 centroid(const Polygon& polygon) {
   Vector3 sum = Vector3::Zero();
@@ -127,22 +136,21 @@ ContactPatch on_face(const Vector3& reference, int axis, double sign, const Vect
     }
   }
   Polygon face = incident.polygon();
-  for (const int k : {(axis + 1) % 3, (axis + 2) % 3}) {
-    for (const double s : {-1.0, 1.0}) {
-      // Beyond an edge of the reference face, by rounding where two edges meet: the nearest part.
-      double nearest = infinity;
-      for (int i = 0; i < face.size; ++i) {
-        nearest = std::min(nearest, s * face[i][k]);
+  // Where rounding leaves nothing, two edges meet: the nearest part, of what the other planes
+  // leave.
+  for (const bool nearest_part : {false, true}) {
+    for (const int k : {(axis + 1) % 3, (axis + 2) % 3}) {
+      for (const double s : {-1.0, 1.0}) {
+        const double nearest = least(face, k, s);
+        if (nearest <= reference[k] - margin) {
+          face = clipped(face, k, s, reference[k]);
+        } else if (nearest_part) {
+          face = clipped(face, k, s, nearest + margin);
+        }
       }
-      const bool beyond = nearest > reference[k];
-      face = clipped(face, k, s, beyond ? nearest + margin : reference[k]);
     }
   }
-  double lowest = infinity;
-  for (int i = 0; i < face.size; ++i) {
-    lowest = std::min(lowest, sign * face[i][axis]);
-  }
-  const double level = lowest + margin;
+  const double level = least(face, axis, sign) + margin;
   const Vector3 on_b = centroid(clipped(face, axis, sign, level));
   Vector3 on_a = on_b.cwiseMax(-reference).cwiseMin(reference);
   on_a[axis] = sign * reference[axis];
@@ -167,10 +175,10 @@ PatchCorners corners_on_face(const Vector3& reference, int axis, double sign, co
   return corners;
 }
 
-ContactPatch on_edges(const RelativeBoxes& s, const AxisSeparation& axis) {
-  const int i = (axis.axis - 6) / 3;
-  const int j = (axis.axis - 6) % 3;
-  const Vector3 n = axis_normal(s, axis);
+/// Along n, in the frame of a.
+ContactPatch on_edges(const RelativeBoxes& s, int axis, const Vector3& n) {
+  const int i = (axis - 6) / 3;
+  const int j = (axis - 6) % 3;
   Vector3 p = Vector3::Zero();
   Vector3 q = s.d_A;
   for (int k = 0; k < 3; ++k) {
@@ -198,17 +206,19 @@ ContactPatch on_face_of_b(const RelativeBoxes& s, int axis, double sign) {
 
 double length_of(const ContactPatch& patch) { return (patch.on_b - patch.on_a).norm(); }
 
+/// 1 - cos of the angle, 1e-3, up to which a direction may be a face's, but for rounding.
+constexpr double nearly_aligned = 5e-7;
+
 /// Two edges across each other; or the faces that they border, where their direction is that of a
 /// face within rounding: then any two edges of these give it, also such as do not meet.
-ContactPatch on_edges_or_faces(const RelativeBoxes& s, const AxisSeparation& axis) {
-  const ContactPatch edges = on_edges(s, axis);
+ContactPatch on_edges_or_faces(const RelativeBoxes& s, int axis, const Vector3& n) {
+  const ContactPatch edges = on_edges(s, axis, n);
   const double margin = 1024.0 * unit_roundoff * (s.half_a.sum() + s.half_b.sum());
-  const Vector3 n = axis_normal(s, axis);
   const Vector3 n_B = s.axes_A.transpose() * n;
   for (int k = 0; k < 3; ++k) {
     for (const bool a : {true, false}) {
       const double along = a ? n[k] : n_B[k];
-      if (1.0 - std::abs(along) > 64.0 * unit_roundoff) {
+      if (1.0 - std::abs(along) > nearly_aligned) {
         continue;
       }
       const double sign = along > 0.0 ? 1.0 : -1.0;
@@ -224,13 +234,18 @@ ContactPatch on_edges_or_faces(const RelativeBoxes& s, const AxisSeparation& axi
 }  // namespace
 
 ContactPatch contact_patch(const RelativeBoxes& s, const AxisSeparation& axis) {
-  if (axis.axis < 3) {
-    return on_face_of_a(s, axis.axis, axis.sign);
+  return contact_patch(s, axis.axis, axis.sign,
+                       axis.axis < 6 ? Vector3(Vector3::Zero()) : axis_normal(s, axis));
+}
+
+ContactPatch contact_patch(const RelativeBoxes& s, int axis, double sign, const Vector3& n_A) {
+  if (axis < 3) {
+    return on_face_of_a(s, axis, sign);
   }
-  if (axis.axis < 6) {
-    return on_face_of_b(s, axis.axis - 3, axis.sign);
+  if (axis < 6) {
+    return on_face_of_b(s, axis - 3, sign);
   }
-  return on_edges_or_faces(s, axis);
+  return on_edges_or_faces(s, axis, n_A);
 }
 
 PatchCorners patch_corners(const RelativeBoxes& s, const AxisSeparation& axis) {
@@ -247,7 +262,7 @@ PatchCorners patch_corners(const RelativeBoxes& s, const AxisSeparation& axis) {
     }
     return corners;
   }
-  return {1, {on_edges(s, axis)}};
+  return {1, {on_edges(s, axis.axis, axis_normal(s, axis))}};
 }
 
 Vector3 lowest_centroid(const Vector3& half, const Vector3& down, double roundoff) {

@@ -18,6 +18,10 @@ struct ContactPatch {
 /// the common area, and a tilted one at its edge or corner. An edge axis: the nearest points of the
 /// two edges.
 [[nodiscard]] ContactPatch contact_patch(const RelativeBoxes& boxes, const AxisSeparation& axis);
+/// The same for an axis, its sign, and the direction found along it (unit, frame of a): the cross
+/// product of nearly parallel edges would come out otherwise when it is computed again.
+[[nodiscard]] ContactPatch contact_patch(const RelativeBoxes& boxes, int axis, double sign,
+                                         const Vector3& n_A);
 
 /// All corners of the patch along an axis, however high above the reference face: pairs of points
 /// with the same coordinates along it. None where the faces lie beside each other.

@@ -111,6 +111,9 @@ Angle half_angle(const Vector3& w, double rate, double s) {
   return {plain, std::fma(rate, half_s, -plain) + rate_low * half_s};
 }
 
+/// Up to this angle the sine is the angle and the cosine 1, in doubles.
+constexpr double first_order = 1e-8;
+
 }  // namespace
 
 Motion Motion::at_rest(Instant start, const Pose& pose) {
@@ -151,8 +154,13 @@ Quaternion Motion::orientation(double s) const {
       double sine = std::sin(half.high);
       double cosine = std::cos(half.high);
       const double sine_high = sine;
-      sine += cosine * half.low;
-      cosine -= sine_high * half.low;
+      if (std::abs(half.low) > first_order) {  // beyond some 1e8 rad
+        sine = sine * std::cos(half.low) + cosine * std::sin(half.low);
+        cosine = cosine * std::cos(half.low) - sine_high * std::sin(half.low);
+      } else {
+        sine += cosine * half.low;
+        cosine -= sine_high * half.low;
+      }
       const double k = sine / rate;
       return Quaternion(cosine, k * w.x(), k * w.y(), k * w.z()) * q;
     }
