@@ -43,12 +43,6 @@ void ProgressBar::show(std::size_t done) {
   }
 }
 
-void ProgressBar::say(const std::string& note) {
-  const std::lock_guard lock(mutex_);
-  note_ = note;
-  show(done_);
-}
-
 bool ProgressBar::due() const {
   return terminal_ && std::chrono::steady_clock::now() - drawn_ > std::chrono::milliseconds(100);
 }
@@ -59,8 +53,8 @@ void ProgressBar::draw() const {
   const double elapsed = std::chrono::duration<double>(drawn_ - start_).count();
   const double left =
       elapsed * static_cast<double>(total_ - done_) / static_cast<double>(done_ == 0 ? 1 : done_);
-  fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {}/{} {}{:.0f} s left", label_, "", filled, "",
-             width - filled, done_, total_, note_.empty() ? "" : note_ + ", ", left);
+  fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {}/{} {:.0f} s left", label_, "", filled, "",
+             width - filled, done_, total_, left);
   std::fflush(stderr);
 }
 

@@ -20,8 +20,6 @@ class ProgressBar {
   void advance();
   /// So many are done.
   void reach(std::size_t done);
-  /// What the bar says besides, from now on; drawn at once where the last drawing is old enough.
-  void say(const std::string& note);
 
  private:
   void show(std::size_t done);
@@ -29,7 +27,6 @@ class ProgressBar {
   [[nodiscard]] bool due() const;
 
   std::string label_;
-  std::string note_;
   std::size_t total_;
   std::size_t done_ = 0;
   bool terminal_;

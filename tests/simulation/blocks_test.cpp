@@ -166,6 +166,14 @@ TEST_CASE("blocks before a wall count 3141, balls 31415, along every axis", "[bl
   }
 }
 
+TEST_CASE("balls before a wall count 314159 along x, y and z", "[blocks][slow]") {
+  for (const std::size_t along : {0U, 2U, 4U}) {
+    const Place place = axes()[along];
+    CAPTURE(place.up);
+    CHECK(count_of_blocks(place, ball, 5) == 314159);
+  }
+}
+
 TEST_CASE("a box that flies flat between two walls stays flat", "[blocks]") {
   for (const Place& place : axes()) {
     CAPTURE(place.up);
