@@ -373,7 +373,7 @@ class Advancement {
   }
 
   /// Apart at `there`: have they been so since a time up to which the touch at `start` got no
-  /// deeper than rounding? The same steps, backwards.
+  /// deeper than rounding (eq. 10)? The same steps, backwards.
   [[nodiscard]] bool left_before(const Look& start, const Look& there) {
     Look at = there;
     for (int i = 0; i < most_steps_back; ++i) {

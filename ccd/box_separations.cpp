@@ -92,8 +92,8 @@ KAIROS_INLINE void operands_of(const Vector3& half_a, const Matrix3& R_WA, const
   o.finish(half_a.data());
 }
 
-/// Calls visit(row, values): 0 along the normals of a, 1 along those of b, 2 + j along e_i x axis j
-/// of b.
+/// Calls visit(row, values): 0 along the normals of a, 1 along those of b (eq. 1), 2 + j along
+/// e_i x axis j of b (eq. 2).
 template <typename Visit>
 KAIROS_INLINE void for_all_rows(const Operands& o, const Visit& visit) {
   const Lanes half_b{o.half_b[0], o.half_b[1], o.half_b[2], o.half_b[0]};

@@ -288,6 +288,7 @@ void PairMotion::evaluate_translation(double t, Kinematics& k) const {
   k.d = d;
   k.v = v;
   k.c = c;
+  // (eq. 11), without what rotations add.
   k.error = 2.0 * error + 16.0 * u * d.lpNorm<1>() + 4.0 * u * reach_;
   k.rate_error = 2.0 * error_rate + 32.0 * u * v.lpNorm<1>();
   k.second_error = 2.0 * error_second + 32.0 * u * c.lpNorm<1>();

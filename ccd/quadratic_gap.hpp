@@ -58,8 +58,9 @@ template <typename Gap>
 
 /// First time t > 0 at which the gap descends through zero. The roots are those of the numerically
 /// stable formula with a compensated discriminant [Kahan2004], rounded outwards by two ulp and by
-/// what the errors of the coefficients amount to, until the signs at t_lo and t_hi are proven.
-/// `touch` (m): a gap within it of zero at the start is a contact that began before.
+/// what the errors of the coefficients amount to, until the signs at t_lo and t_hi are proven;
+/// there is none where (eq. 13) holds. `touch` (m): a gap within it of zero at the start is a
+/// contact that began before.
 [[nodiscard]] FirstDescent first_descent(const QuadraticGap& gap, double touch);
 
 }  // namespace kairos::ccd

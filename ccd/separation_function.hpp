@@ -9,7 +9,7 @@ namespace kairos::ccd {
 ///   f(h) = n(h) . d(h) - sum_k A_k |n(h) . a_k(h)| - sum_k B_k |n(h) . b_k(h)| - reach
 ///
 /// with half extents A, B and axes a_k, b_k. f(h) > 0 proves that they are apart at t + h. A
-/// quadratic below f comes from the exact first derivatives and bounds of the second ones
+/// quadratic below f (eq. 9) comes from the exact first derivatives and bounds of the second ones
 /// [Tang2009], [Zhang2006]; `advance` returns how far it stays positive.
 class SeparationFunction {
  public:

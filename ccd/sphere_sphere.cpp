@@ -126,8 +126,8 @@ FirstDescent first_descent(const DistanceGap& gap, double touch) {
     const double t_lo = last_proven(gap, 0.0, nearest_at);
     return {Descent::grazing, t_lo, 2.0 * nearest_at - t_lo};
   }
-  // Lagrange's identity turns the discriminant into (reach - miss)(reach + miss) |v|^2, which does
-  // not cancel.
+  // Lagrange's identity (eq. 14) turns the discriminant into (reach - miss)(reach + miss) |v|^2,
+  // which does not cancel.
   const double inwards = std::sqrt((gap.reach - miss) * (gap.reach + miss));
   double root = start * (start + 2.0 * gap.reach) / (-approach + speed * inwards);
   root -= gap(root) / gap.rate(root);  // the distance itself is better conditioned than its square
