@@ -8,6 +8,7 @@
 #include "core/reading/document.hpp"
 #include "core/reading/force_reader.hpp"
 #include "core/reading/frame_reader.hpp"
+#include "core/reading/many_reader.hpp"
 #include "core/reading/overrides.hpp"
 #include "core/reading/scene_keys.hpp"
 #include "core/reading/scene_limits.hpp"
@@ -87,6 +88,16 @@ void read_bodies(const Item& item, const BodyDefaults& defaults, Scene& scene) {
   }
 }
 
+void read_manies(const Item& item, const BodyDefaults& defaults, Scene& scene) {
+  const Array& array = item.array();
+  UniqueNames names;
+  for (std::size_t i = 0; i < array.size(); ++i) {
+    const Item element(array[i], element_path("many", array[i], i));
+    read_many(element, defaults, scene.bodies);
+    names.add(*TableReader(element).find("name"), "many", array[i].line);
+  }
+}
+
 void read_forces(const Item& item, double G, Scene& scene) {
   const Array& array = item.array();
   UniqueNames names;
@@ -143,7 +154,13 @@ Scene read(const TableReader& table, const std::string& path) {
   };
   scene.friction_combine = combination("friction_combine", scene.friction_combine);
   scene.restitution_combine = combination("restitution_combine", scene.restitution_combine);
-  read_bodies(table.need("body", "at least one [[body]]"), defaults, scene);
+  const auto many = table.find("many");
+  if (!many || table.has("body")) {
+    read_bodies(table.need("body", "at least one [[body]]"), defaults, scene);
+  }
+  if (many) {
+    read_manies(*many, defaults, scene);
+  }
   if (const auto force = table.find("force")) {
     read_forces(*force, defaults.G, scene);
   }
