@@ -223,13 +223,31 @@ void EventPredictor::leave_overlap(BodyIndex a, BodyIndex b, Instant t, double d
   if (normal_velocity({o.point, o.normal, o.gap}, state_a, state_b) < 0.0) {
     return run_.agenda.push(t, Due::impact, a, b);
   }
-  const TimeOfImpact toi = time_of_separation(a, b, t, duration);
-  if (toi.status == ToiStatus::overlapping) {
+  const TimeOfImpact parting = time_of_separation(a, b, t, duration);
+  const TimeOfImpact meanwhile = without_errors(a, b, t, parting.t_hi);
+  if (parting.status == ToiStatus::overlapping || meanwhile.status == ToiStatus::overlapping) {
     return run_.stop(t, fmt::format("accumulation: {} stay in contact; what lasts is kept for a "
                                     "ball on one face only; {}",
                                     run_.names(a, b), part_them));
   }
-  run_.agenda.push(t + toi.t_hi, Due::recheck, a, b);
+  if (meanwhile.status != ToiStatus::separated) {
+    return push_meeting(a, b, t, meanwhile);
+  }
+  run_.agenda.push(t + parting.t_hi, Due::recheck, a, b);
+}
+
+/// When they touch as their motions are told, without what these may err by: with it a pair in
+/// touch overlaps for a while, and could go deeper at another place than where it parts.
+TimeOfImpact EventPredictor::without_errors(BodyIndex a, BodyIndex b, Instant t, double duration) {
+  Motion motion_a = motions_.of(a);
+  Motion motion_b = motions_.of(b);
+  motion_a.error_radius = motion_b.error_radius = 0.0;
+  const TimeOfImpact toi =
+      run_.detector.time_of_impact({run_.model.shape(a), motion_a}, {run_.model.shape(b), motion_b},
+                                   {t, duration}, run_.options.toi_tolerance);
+  ++run_.cost.toi_queries;
+  run_.cost.toi_evaluations += toi.evaluations;
+  return toi;
 }
 
 void EventPredictor::predict_parting(BodyIndex a, BodyIndex b, Instant t, double duration,
