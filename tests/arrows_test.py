@@ -1,7 +1,7 @@
 """Reads every include of the rooms and checks the arrows of the house.
 
     ccd -> core      integrators -> core      core -> nothing of ours
-    simulation -> core, ccd, integrators      experiments -> simulation and below
+    simulation -> core, ccd, integrators      experiments, python -> simulation and below
 
 Folders inside a room are layers too: there is no circle among the folders of the tree, at any depth.
 usage: arrows_test.py SOURCE_DIR
@@ -17,6 +17,7 @@ MAY = {
     "integrators": {"core", "integrators"},
     "simulation": {"core", "ccd", "integrators", "simulation"},
     "experiments": {"core", "ccd", "integrators", "simulation", "experiments"},
+    "python": {"core", "ccd", "integrators", "simulation", "python"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
 

@@ -1,8 +1,8 @@
 #include "experiments/toi/toi_query.hpp"
 
-#include "ccd/query_check.hpp"
 #include "core/error.hpp"
 #include "core/reading/csv.hpp"
+#include "simulation/query_limits.hpp"
 
 #include <fmt/format.h>
 
@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <system_error>
+#include <utility>
 
 namespace kairos::experiments {
 namespace {
@@ -20,12 +21,11 @@ constexpr std::array<std::string_view, 19> number_names{"hx", "hy", "hz", "px", 
                                                         "ay", "az", "wx", "wy", "wz"};
 enum NumberIndex : std::size_t { h = 0, p = 3, q = 6, v = 10, a = 13, w = 16 };
 
-/// What the detectors accept.
-constexpr double largest_magnitude = ccd::greatest_size;
-constexpr double smallest_extent = ccd::least_extent;
-
-/// Squares of times are finite.
-constexpr double longest_duration = 1e150;
+void refuse(std::string_view column, std::string reason) {
+  if (!reason.empty()) {
+    throw BadField{column, std::move(reason)};
+  }
+}
 
 double read_number(std::string_view field, std::string_view column,
                    double largest = largest_magnitude) {
@@ -129,15 +129,7 @@ class ToiQueryFormat::Body {
     const Pose pose{vector(p), orientation()};
     const Twist twist{vector(v), vector(w)};
     const Vector3 acceleration = vector(a);
-    const double reach = pose.position.norm() + twist.linear.norm() * duration +
-                         0.5 * acceleration.norm() * duration * duration +
-                         twist.angular.norm() * duration;
-    if (!(reach <= largest_magnitude)) {
-      throw BadField{columns_.name[v],
-                     fmt::format("with this acceleration and duration leads beyond {}; allowed: "
-                                 "motions that stay within",
-                                 largest_magnitude)};
-    }
+    refuse(columns_.name[v], why_too_far(pose, twist, acceleration, duration));
     return Motion::ballistic(Instant{}, duration, pose, twist, acceleration);
   }
 
@@ -150,22 +142,13 @@ class ToiQueryFormat::Body {
   }
   [[nodiscard]] double extent(std::size_t i) const {
     const double value = number(i);
-    if (!(value >= smallest_extent)) {
-      throw BadField{columns_.name[i],
-                     fmt::format("{} is no half-extent; allowed: numbers > 0, from {} (m)", value,
-                                 smallest_extent)};
-    }
+    refuse(columns_.name[i], why_no_extent(value));
     return value;
   }
   [[nodiscard]] Quaternion orientation() const {
     Quaternion q_WB(number(q), number(q + 1), number(q + 2), number(q + 3));
     const double norm = q_WB.norm();
-    constexpr double unit_tolerance = 1e-6;  // physical: what a person's rounding may cost
-    if (!(std::abs(norm - 1.0) <= unit_tolerance)) {
-      throw BadField{
-          columns_.name[q],
-          fmt::format("the quaternion has length {}; allowed: 1 within {}", norm, unit_tolerance)};
-    }
+    refuse(columns_.name[q], why_not_unit(norm));
     q_WB.coeffs() /= norm;
     return q_WB;
   }
@@ -190,11 +173,8 @@ ToiQuery ToiQueryFormat::read(std::string_view row, Scratch& scratch) const {
   }
   ToiQuery query;
   query.id = fields[id_];
-  query.duration = read_number(fields[duration_], "duration", longest_duration);
-  if (query.duration < 0.0) {
-    throw BadField{"duration",
-                   fmt::format("{} is negative; allowed: numbers >= 0 (s)", query.duration)};
-  }
+  query.duration = read_number(fields[duration_], "duration", longest_duration_asked);
+  refuse("duration", why_no_window(query.duration));
   const Body body_a(a_, fields);
   const Body body_b(b_, fields);
   query.shape_a = body_a.shape();

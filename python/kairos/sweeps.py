@@ -1,0 +1,108 @@
+"""Sweeps and advice: the program's work."""
+
+from __future__ import annotations
+
+import contextlib
+import glob
+import os
+import re
+import tempfile
+
+from .program import call
+from .scene import Scene, _find
+from .tables import Table
+
+
+class Sweep:
+    """What a sweep left in a folder: `tables`, by name ("NAME_runs", "NAME_summary", ...)."""
+
+    def __init__(self, folder):
+        self.folder = os.fspath(folder)
+
+    @property
+    def tables(self) -> dict[str, Table]:
+        paths = sorted(glob.glob(os.path.join(glob.escape(self.folder), "*.csv")))
+        return {os.path.basename(path)[:-4]: Table(path) for path in paths}
+
+    def _only(self, kind) -> Table:
+        found = [table for name, table in self.tables.items() if name.endswith("_" + kind)]
+        if len(found) != 1:
+            raise KeyError(f"{len(found)} tables *_{kind} in {self.folder}; name one of tables")
+        return found[0]
+
+    @property
+    def runs(self) -> Table:
+        """A row per run, of a spec with one sweep."""
+        return self._only("runs")
+
+    @property
+    def summary(self) -> Table:
+        """Quartiles over repeats, of a spec with one sweep."""
+        return self._only("summary")
+
+    def __repr__(self):
+        return f"<kairos.Sweep {self.folder}: {', '.join(self.tables)}>"
+
+
+def _spec_file(spec, folder):
+    """The path of a spec; its text is written to a file first."""
+    if isinstance(spec, str) and "\n" in spec:
+        path = os.path.join(folder, "sweep.toml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(spec)
+        return path
+    return os.path.abspath(os.fspath(spec))
+
+
+@contextlib.contextmanager
+def _folder(out):
+    if out is not None:
+        os.makedirs(out, exist_ok=True)
+        yield os.fspath(out)
+    else:
+        yield tempfile.mkdtemp(prefix="kairos-")
+
+
+def _size(full):
+    return "--full" if full else "--quick"
+
+
+def sweep(spec, *, out=None, full=False, threads=0) -> Sweep:
+    """Runs a sweep: the path of a spec (TOML), or its text.
+
+    out: folder of the tables (default: a temporary one). threads: 0: one per core.
+    """
+    with _folder(out) as folder:
+        path = _spec_file(spec, folder if out is None else tempfile.mkdtemp(prefix="kairos-spec-"))
+        call("sweep", path, _size(full), "--threads", threads, "--out", folder)
+        return Sweep(folder)
+
+
+@contextlib.contextmanager
+def _scene_file(scene):
+    if not isinstance(scene, Scene):
+        yield _find(scene)
+        return
+    with tempfile.TemporaryDirectory(prefix="kairos-") as folder:
+        path = os.path.join(folder, re.sub(r"[^A-Za-z0-9_-]", "-", scene.name) + ".toml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(scene.toml())
+        yield path
+
+
+def tradeoff(scene, *, duration=None, out=None, threads=0) -> Sweep:
+    """What accuracy costs on a scene: every sensible method, its errors and its counted work.
+    `.tables` holds them by name. duration: s, instead of the scene's."""
+    with _folder(out) as folder, _scene_file(scene) as path:
+        limits = ["--duration", duration] if duration is not None else []
+        call("tradeoff", path, *limits, "--threads", threads, "--rounds", 1, "--out", folder)
+        return Sweep(folder)
+
+
+def recommend(scene, error, *, penetration=None, duration=None, threads=0) -> str:
+    """The cheapest method that meets a bound on a scene, with the evidence, as the program prints
+    it. error: of a position at the end, m; penetration: deepest, m."""
+    with _scene_file(scene) as path:
+        limits = ["--penetration", penetration] if penetration is not None else []
+        limits += ["--duration", duration] if duration is not None else []
+        return call("recommend", path, "--error", error, *limits, "--threads", threads)

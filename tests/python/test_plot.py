@@ -1,0 +1,61 @@
+"""kairos.plot: runs over time, in memory or as files."""
+
+import numpy as np
+import pytest
+
+import kairos
+
+matplotlib = pytest.importorskip("matplotlib")
+
+
+def runs_of(program, tmp_path, names):
+    for name in names:
+        program("run", name, "--duration", "1", "--out", tmp_path / name)
+    return [tmp_path / name for name in names]
+
+
+def test_a_run_in_memory_is_drawn_as_its_files_are(program, tmp_path):
+    names = ["bounce", "spinning-box"]
+    figure = kairos.plot(*runs_of(program, tmp_path, names))
+    in_memory = kairos.plot(*[kairos.run(name, duration=1) for name in names])
+    for ours, theirs in zip(in_memory.axes, figure.axes):
+        assert [line.get_label() for line in ours.lines] == [line.get_label() for line in theirs.lines]
+        for a, b in zip(ours.lines, theirs.lines):
+            assert np.array_equal(np.asarray(a.get_ydata(), float), np.asarray(b.get_ydata(), float),
+                                  equal_nan=True)
+
+
+def test_gaps_of_pictures_are_the_gaps_of_the_library():
+    """Boxes, balls and planes: against kairos.distance, at the frames of a run."""
+    from kairos import plotting
+    scene = kairos.Scene("all", duration=0.5, G=0.0)
+    scene.wall("floor", shape="half-space")
+    scene.ball("ball", radius=0.2, mass=1, position=(0, 2, 0), velocity=(1, -1, 0))
+    scene.body("crate", entity="body", shape="box", half_extents=(0.2, 0.3, 0.4), mass=1,
+               position=(3, 2, 0), velocity=(-1, 0, 0.5), angular_velocity=(1, 2, 3))
+    scene.body("plank", entity="body", shape="box", half_extents=(0.5, 0.1, 0.1), mass=1,
+               position=(0, 4, 1), angular_velocity=(0, 1, 1))
+    run = kairos.run(scene)
+    drawn = plotting._as_drawn(run, None)
+    make = {"sphere": lambda s, **at: kairos.spheres(s["half_extents"][0], **at),
+            "box": lambda s, **at: kairos.boxes(s["half_extents"], **at),
+            "half-space": lambda s, **at: kairos.half_spaces(s["normal"], **at)}
+    for i in range(4):
+        for j in range(i):
+            a, b = (make[run.shapes[k]["shape"]](run.shapes[k], position=run.position[:, k],
+                                                 orientation=run.orientation[:, k]) for k in (i, j))
+            gap = kairos.distance(a, b)["gap"]
+            ours = plotting._script().gap_of(drawn, i, j)
+            if {run.shapes[i]["shape"], run.shapes[j]["shape"]} == {"box"}:
+                # The greatest separation is between distance/sqrt(3) and the distance.
+                assert np.all(ours <= gap + 1e-12) and np.all(ours >= gap / np.sqrt(3) - 1e-12)
+            else:
+                assert np.allclose(ours, gap, atol=1e-13)  # some tens of roundings of 4 m
+
+
+def test_wrong_input_is_named(program, tmp_path):
+    folder, = runs_of(program, tmp_path, ["bounce"])
+    with pytest.raises(SystemExit, match="is no body of bounce"):
+        kairos.plot(folder, bodies=["bell"])
+    with pytest.raises(SystemExit, match="is no folder that kairos run --out wrote"):
+        kairos.plot(tmp_path)

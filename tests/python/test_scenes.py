@@ -1,0 +1,80 @@
+"""Scenes built in Python are scenes of files: the same keys, checks and messages."""
+
+import numpy as np
+import pytest
+
+import kairos
+
+
+def drop():
+    scene = kairos.Scene("drop", duration=2.0)
+    scene.wall("floor", shape="half-space")
+    return scene.ball("ball", radius=0.1, mass=1.0, position=(0, 5, 0), restitution=0.9)
+
+
+def refused(build):
+    with pytest.raises(kairos.InputError) as found:
+        build()
+    return found.value
+
+
+def test_a_built_scene_reads_back_from_its_text_to_the_same_bits():
+    scene = drop().force("quadratic-drag", drag_coefficient=0.47)
+    again = kairos.Scene.parse(scene.toml())
+    assert again.toml() == scene.toml()
+    assert np.array_equal(kairos.run(scene).position, kairos.run(again).position)
+
+
+def test_values_come_as_python_and_numpy_write_them():
+    plain = drop().toml()
+    scene = kairos.Scene("drop", duration=np.float64(2))
+    scene.wall("floor", shape="half-space", mass=None)  # None: not given
+    scene.ball("ball", radius=np.float32(0.5) / 5, mass=np.int64(1), position=np.array([0, 5, 0]),
+               restitution=0.9)
+    run, same = kairos.run(scene.override("body.ball.radius", 0.1)), kairos.run(drop())
+    assert np.array_equal(run.position, same.position)
+    assert "mass = 1" in plain
+    with pytest.raises(TypeError, match=r"body\.ball\.radius: is a complex"):
+        kairos.Scene().ball("ball", radius=1j)
+
+
+def test_messages_are_those_of_the_reader():
+    wrong = refused(lambda: drop().ball("b", radius=-1, mass=1).check())
+    assert wrong.key == "body.b.radius" and wrong.line == 0
+    assert str(wrong).startswith("body.b.radius: is -1; allowed: a number from")
+    assert 'did you mean "radius"' in str(refused(lambda: drop().ball("b", radios=1).check()))
+    text = 'duration = 1\n[[body]]\nname = "b"\nentity = "ball"\nradius = -1\nmass = 1\n'
+    wrong = refused(lambda: kairos.Scene.parse(text, "my.toml").check())
+    assert (wrong.file, wrong.line, wrong.key) == ("my.toml", 5, "body.b.radius")
+    assert str(wrong) == f"my.toml:5: body.b.radius: {wrong.reason}"
+
+
+def test_every_entity_is_a_method():
+    for kind in kairos.Scene.entities():
+        assert callable(getattr(kairos.Scene, kind.replace("-", "_")))
+    scene = kairos.Scene("pad", duration=0.1).anti_gravity_pad("pad", half_extents=(1, 1, 1))
+    assert scene.bodies == ["pad"]
+
+
+def test_shipped_scenes_are_found_and_read():
+    names = kairos.shipped_scenes()
+    assert "bounce" in names and len(names) > 20
+    for name in names:
+        kairos.Scene.read(name).check()
+    assert refused(lambda: kairos.Scene.read("bounse")).reason
+
+
+def test_a_scene_of_the_thesis_format_takes_overrides_and_no_keys():
+    scene = kairos.Scene.read("physworld")
+    assert "TOML" in str(refused(lambda: scene.ball("b", radius=1)))
+    assert refused(lambda: kairos.run(scene.override("body.no", 1))).key
+
+
+def test_a_copy_is_a_scene_of_its_own():
+    scene = drop()
+    other = scene.copy().ball("other", radius=0.1, mass=1, position=(1, 5, 0))
+    assert scene.bodies == ["floor", "ball"] and other.bodies == ["floor", "ball", "other"]
+
+
+def test_explain_says_what_is_left_out():
+    assert any("rotation" in topic for topic, _, _ in drop().explain())
