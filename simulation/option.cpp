@@ -80,7 +80,33 @@ constexpr Option name_option(std::string_view name, std::string_view help,
   return {name, name, OptionKind::name, {}, help, get, put};
 }
 
-const std::array<Option, 21> table{{
+template <auto Member>
+constexpr Option stepping_number(std::string_view name, std::string_view flag, Range range,
+                                 std::string_view help) {
+  return {name,
+          flag,
+          OptionKind::number,
+          range,
+          help,
+          [](const RunChoice& c) { return text_of(c.stepping.*Member); },
+          [](RunChoice& c, double x, const std::string&) { c.stepping.*Member = x; }};
+}
+
+template <auto Member>
+constexpr Option stepping_count(std::string_view name, std::string_view flag,
+                                std::string_view help) {
+  return {name,
+          flag,
+          OptionKind::count,
+          {.lowest = 0.0, .highest = most_count},
+          help,
+          [](const RunChoice& c) { return fmt::format("{}", c.stepping.*Member); },
+          [](RunChoice& c, double x, const std::string&) {
+            c.stepping.*Member = static_cast<std::int64_t>(x);
+          }};
+}
+
+const std::array<Option, 34> table{{
     name_option(
         "scheme", "when the world is looked at, and how contacts are kept",
         [](const RunChoice& c) { return c.method.scheme; },
@@ -225,6 +251,54 @@ const std::array<Option, 21> table{{
      "replay every step in double-double for the ledger's line roundoff",
      [](const RunChoice& c) { return text_of(c.roundoff); },
      [](RunChoice& c, double x, const std::string&) { c.roundoff = x != 0.0; }},
+    stepping_count<&TimeSteppingOptions::substeps>(
+        "substeps", "substeps", "steps in a frame; 0: moreau-jean and pgs 1, xpbd 20, penalty 100"),
+    stepping_count<&TimeSteppingOptions::iterations>(
+        "iterations", "iterations",
+        "sweeps over all contacts in a step; 0: moreau-jean at most 1000, pgs 10, xpbd 1"),
+    stepping_number<&TimeSteppingOptions::theta>("theta", "theta", {.lowest = 0.5, .highest = 1.0},
+                                                 "moreau-jean: weight of the end of a step"),
+    stepping_number<&TimeSteppingOptions::solver_tolerance>(
+        "solver_tolerance", "solver-tolerance", {.lowest = 0.0, .highest = 1.0},
+        "moreau-jean: sweeps end where velocities change by less, relatively"),
+    stepping_number<&TimeSteppingOptions::beta>(
+        "beta", "beta", {.lowest = 0.0, .highest = 1.0},
+        "pgs: share of a penetration that a step is to undo (Baumgarte)"),
+    stepping_number<&TimeSteppingOptions::slop>(
+        "slop", "slop", {.lowest = 0.0, .highest = most_tolerance, .unit = "m"},
+        "pgs: penetration that is left alone"),
+    stepping_number<&TimeSteppingOptions::restitution_threshold>(
+        "restitution_threshold", "restitution-threshold",
+        {.lowest = 0.0, .highest = most_tolerance, .unit = "m/s"},
+        "pgs: slower approaches do not rebound"),
+    {"cold_starts",
+     "cold-starts",
+     OptionKind::flag,
+     {},
+     "pgs: no warm starting from the impulses of the last step",
+     [](const RunChoice& c) { return text_of(!c.stepping.warm_starting); },
+     [](RunChoice& c, double x, const std::string&) { c.stepping.warm_starting = x == 0.0; }},
+    stepping_number<&TimeSteppingOptions::compliance>(
+        "compliance", "compliance", {.lowest = 0.0, .highest = 1e30, .unit = "m/N"},
+        "xpbd: of contacts"),
+    stepping_number<&TimeSteppingOptions::stiffness>(
+        "stiffness", "stiffness",
+        {.lowest = 0.0, .highest = 1e30, .above = true, .unit = "N/m^exponent"},
+        "penalty: of a contact point"),
+    stepping_number<&TimeSteppingOptions::exponent>(
+        "exponent", "exponent", {.lowest = 1.0, .highest = 4.0},
+        "penalty: of the depth; 1.5 after Hertz, 1 a linear spring"),
+    {"dissipation",
+     "dissipation",
+     OptionKind::number,
+     {.lowest = 0.0, .highest = most_tolerance, .unit = "s/m"},
+     "penalty: alpha of Hunt and Crossley (default: from the pair's restitution)",
+     [](const RunChoice& c) { return text_of(c.stepping.dissipation); },
+     [](RunChoice& c, double x, const std::string&) { c.stepping.dissipation = x; }},
+    stepping_number<&TimeSteppingOptions::stiction_velocity>(
+        "stiction_velocity", "stiction-velocity",
+        {.lowest = 0.0, .highest = most_tolerance, .above = true, .unit = "m/s"},
+        "penalty: slower slip has less friction"),
 }};
 
 std::string allowed_by(const Option& option) {

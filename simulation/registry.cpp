@@ -19,6 +19,10 @@
 #include "core/schemes/frame/geometric.hpp"
 #include "core/schemes/frame/original.hpp"
 #include "core/schemes/frame/substepped.hpp"
+#include "core/schemes/stepping/moreau_jean.hpp"
+#include "core/schemes/stepping/penalty.hpp"
+#include "core/schemes/stepping/pgs.hpp"
+#include "core/schemes/stepping/xpbd.hpp"
 #include "integrators/catalogue/catalogue.hpp"
 #include "integrators/closed_form_or.hpp"
 #include "simulation/model_gaps.hpp"
@@ -85,8 +89,9 @@ const IntegratorEntry& find_entry(std::string_view name) {
 }  // namespace
 
 std::span<const std::shared_ptr<const Scheme>> schemes() {
-  static const Entries<Scheme> entries{make_original(), make_geometric(), make_substepped(),
-                                       make_bisected(), make_event_driven()};
+  static const Entries<Scheme> entries{make_original(), make_geometric(),    make_substepped(),
+                                       make_bisected(), make_event_driven(), make_moreau_jean(),
+                                       make_pgs(),      make_xpbd(),         make_penalty()};
   return entries;
 }
 

@@ -29,6 +29,7 @@ struct Plan {
   std::shared_ptr<const Scheme> scheme;
   Method method;
   SchemeOptions options;
+  std::string integrator;  ///< as named
 };
 
 void require(bool good, std::string_view key, double value, std::string_view allowed) {
@@ -89,7 +90,8 @@ Plan make_plan(const Model& model, const RunChoice& choice, const PlugIns& own) 
             {own.integrator ? own.integrator : integrator(choice.method.integrator, choice.stepper),
              detector, own.impact ? own.impact : find_impact_law(choice.method.impact),
              find_broad_phase(model.broad_phase()), swept_bounds()},
-            scheme_options(model.scene(), choice)};
+            scheme_options(model.scene(), choice),
+            own.integrator ? "own" : choice.method.integrator};
   if (choice.cold_restarts) {
     plan.method.stepper = [make = plan.method.stepper](const Model& of, std::size_t island) {
       return with_cold_restarts(make(of, island));
@@ -133,6 +135,13 @@ std::string refusal(const Model& model, const Plan& plan) {
   }
   if (const std::string pair = pair_across_islands(model); detector.at_step_ends && !pair.empty()) {
     return fmt::format("detector '{}': {}", detector.name, pair);
+  }
+  if (!scheme.integrator.empty() && plan.integrator != "auto" &&
+      plan.integrator != scheme.integrator) {
+    return fmt::format(
+        "scheme '{}' moves bodies by a method of its own, '{}'; integrator '{}' has "
+        "no part in it; allowed: auto",
+        scheme.name, scheme.integrator, plan.integrator);
   }
   if (plan.options.duration / mean_frame_duration(plan.options.frames) > most_frames) {
     return fmt::format("{} s in frames of {} s are more than {} frames", plan.options.duration,

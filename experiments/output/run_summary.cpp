@@ -25,6 +25,10 @@ std::string_view gravity_name(GravityMode mode) {
 
 /// What `auto` came to: the integrators in use, each once.
 std::string integrators_in_use(const FinishedRun& run) {
+  if (const SchemeInfo scheme = find_scheme(run.choice.method.scheme)->info();
+      !scheme.integrator.empty()) {
+    return std::string(scheme.integrator);
+  }
   const IslandStepper make = find_integrator(run.choice.method.integrator, run.choice.stepper);
   std::set<std::string> names;
   for (std::size_t i = 0; i < run.model.islands().size(); ++i) {

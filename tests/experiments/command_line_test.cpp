@@ -46,10 +46,12 @@ TEST_CASE("option --version names the version", "[cli]") {
 TEST_CASE("list names what there is to choose from", "[cli]") {
   const Outcome all = kairos_program({"list"});
   REQUIRE(all.exit_code == 0);
-  for (const char* name :
-       {"original", "geometric", "substepped", "bisected", "event-driven", "thesis-euler", "auto",
-        "closed-form", "rk4", "sat", "bisection", "conservative-advancement", "certified", "newton",
-        "all-pairs", "conveyor", "bounce"}) {
+  for (const char* name : {"original",     "geometric",    "substepped", "bisected",
+                           "event-driven", "moreau-jean",  "pgs",        "xpbd",
+                           "penalty",      "thesis-euler", "auto",       "closed-form",
+                           "rk4",          "sat",          "bisection",  "conservative-advancement",
+                           "certified",    "newton",       "all-pairs",  "conveyor",
+                           "bounce"}) {
     CAPTURE(name);
     CHECK(contains(all.out, name));
   }

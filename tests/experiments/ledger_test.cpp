@@ -41,6 +41,17 @@ TEST_CASE("ledger: every frame of every shipped scene is explained", "[ledger]")
   }
 }
 
+TEST_CASE(
+    "ledger: every frame of every shipped scene is explained where schemes step over contacts",
+    "[ledger]") {
+  for (const std::string& scene : shipped_scenes()) {
+    for (const char* scheme : {"moreau-jean", "pgs", "xpbd", "penalty"}) {
+      CAPTURE(scene, scheme);
+      check_frames(scene, {scheme, "auto", "certified", "newton"});
+    }
+  }
+}
+
 TEST_CASE("ledger: turning bodies whose step is a frame are explained", "[ledger]") {
   for (const char* scene : {"flipping-box", "spinning-box"}) {
     for (const char* integrator : {"thesis-euler", "explicit-euler", "symplectic-euler",

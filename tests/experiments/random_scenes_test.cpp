@@ -351,6 +351,9 @@ TEST_CASE("shipped scenes do not depend on the order of their bodies, energy inc
     }
     Books plain, reversed;
     const RunChoice choice{.duration = std::min(scene.duration, 2.0)};
+    if (!why_refused(Model(scene), choice).empty()) {
+      continue;
+    }
     const RunResult result = simulate(Model(scene), choice, plain);
     const RunResult again = simulate(Model(other), choice, reversed);
     CAPTURE(name);

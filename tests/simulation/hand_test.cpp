@@ -66,6 +66,9 @@ class Folder {
 std::vector<RunChoice> choices() {
   std::vector<RunChoice> result;
   for (const auto& scheme : schemes()) {
+    if (!scheme->info().integrator.empty()) {
+      continue;  // steps over contacts: knows no hands, and refuses them
+    }
     result.push_back(
         {.method = {std::string(scheme->info().name), "closed-form", "certified", "newton"}});
   }

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "tests/catch.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <set>
 #include <string>
@@ -28,7 +29,9 @@ OptionValue another(const Option& option) {
     case OptionKind::number:
       break;
   }
-  return option.range.lowest >= 1.0 ? 3.0 : 0.125;
+  return option.range.contains(0.125)
+             ? 0.125
+             : 0.25 * option.range.lowest + 0.75 * std::min(option.range.highest, 3.0);
 }
 
 std::string message(std::string_view name, const OptionValue& value) {

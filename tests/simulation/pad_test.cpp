@@ -16,6 +16,9 @@ TEST_CASE("pad: under every scheme every stepper of order 2 and more flies its p
           "[pad]") {
   const Scene scene = read_scene(find_scene("pad"), {{"duration", "1.4"}});
   for (const auto& scheme : schemes()) {
+    if (!scheme->info().integrator.empty()) {
+      continue;  // takes no stepper
+    }
     for (const IntegratorEntry& integrator : integrators()) {
       if (integrator.info.position_order == 1) {
         continue;  // the Euler methods gain or lose energy on a parabola

@@ -116,7 +116,7 @@ double EnergyAccount::surplus(const Leg& leg) {
     ledger_.add(EnergyLine::driven_work, leg.riding_work);
     surplus -= leg.riding_work;
   }
-  return surplus;
+  return surplus - leg.contact_work;
 }
 
 void EnergyAccount::act(std::span<const Force* const> forces, std::span<const Motion> motions,

@@ -17,10 +17,11 @@ struct Leg {
   std::span<const BodyState> from;  ///< indexed by `BodyIndex`
   std::span<const BodyState> to;    ///< indexed by `BodyIndex`
   std::span<const Vector3>
-      other_force;           ///< N per body: what acts beside gravity, constant; by `BodyIndex`
-  bool exact = false;        ///< the stepper has no truncation error
-  double roundoff = 0.0;     ///< of the step, where a replay told it, J
-  double riding_work = 0.0;  ///< of a driven surface on a ball that it carries, J
+      other_force;            ///< N per body: what acts beside gravity, constant; by `BodyIndex`
+  bool exact = false;         ///< the stepper has no truncation error
+  double roundoff = 0.0;      ///< of the step, where a replay told it, J
+  double riding_work = 0.0;   ///< of a driven surface on a ball that it carries, J
+  double contact_work = 0.0;  ///< of contact impulses within it, booked by who knows the lines, J
 };
 
 /// What roundoff did to the energy of a body between a step in exact arithmetic and the same step
