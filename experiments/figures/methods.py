@@ -14,9 +14,10 @@ MARKERS = ["o", "s", "^", "D", "v", "P", "X", "*", "<", ">", "h", "p"]
 DASHES = ["-", "--", "-.", (0, (1, 1.2)), (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)), (0, (3, 1, 1, 1)),
           (0, (2, 2))]
 
-# In the order of the thesis' own method and its cures.
-SCHEMES = ["original", "geometric", "substepped", "equal substeps", "bisected", "event-driven"]
-_SCHEME = {name: (COLOURS[i], MARKERS[i], DASHES[i]) for i, name in enumerate(SCHEMES)}
+# In the order of the thesis' own method and its cures; then those that people use.
+SCHEMES = ["original", "geometric", "substepped", "equal substeps", "bisected", "event-driven",
+           "moreau-jean", "pgs", "xpbd", "penalty"]
+_SCHEME = {name: (COLOURS[i % 8], MARKERS[i], DASHES[i % 8]) for i, name in enumerate(SCHEMES)}
 
 # The thesis' own method as a whole: `original` with its own integrator and impact law, filled.
 THESIS = "thesis"
