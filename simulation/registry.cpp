@@ -1,3 +1,9 @@
+// Clang finds a function of an inline namespace where a namespace of that name is opened: the
+// namespace `integrators` comes first.
+// clang-format off
+#include "integrators/catalogue/catalogue.hpp"
+#include "integrators/closed_form_or.hpp"
+// clang-format on
 #include "simulation/registry.hpp"
 
 #include "ccd/all_pairs.hpp"
@@ -23,8 +29,6 @@
 #include "core/schemes/stepping/penalty.hpp"
 #include "core/schemes/stepping/pgs.hpp"
 #include "core/schemes/stepping/xpbd.hpp"
-#include "integrators/catalogue/catalogue.hpp"
-#include "integrators/closed_form_or.hpp"
 #include "simulation/model_gaps.hpp"
 
 #include <fmt/format.h>

@@ -3,7 +3,8 @@
 # usage: cmake -D NODE=... -D NPM=... -D SOURCE=... -D FOLDER=... -P build_viewer.cmake
 set(work ${FOLDER}/work)
 file(MAKE_DIRECTORY ${work})
-file(COPY ${SOURCE}/package.json ${SOURCE}/package-lock.json ${SOURCE}/build.mjs ${SOURCE}/src
+file(COPY ${SOURCE}/package.json ${SOURCE}/package-lock.json ${SOURCE}/build.mjs ${SOURCE}/scenes.mjs
+          ${SOURCE}/src
      DESTINATION ${work})
 file(SHA256 ${SOURCE}/package-lock.json lock)
 set(fetched ${work}/node_modules/fetched)

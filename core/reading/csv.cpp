@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
+#include <string>
 
 namespace kairos {
 inline namespace core {
@@ -36,9 +38,19 @@ std::vector<std::size_t> positions(const std::vector<std::string_view>& header,
 
 std::optional<double> parse_number(std::string_view text) {
   double x = 0.0;
+#ifdef __cpp_lib_to_chars
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, x);
-  if (error != std::errc() || stop != end || !std::isfinite(x)) {
+  const bool whole = error == std::errc() && stop == end;
+#else  // libc++ reads whole numbers only; strtod also takes what `from_chars` does not
+  const std::string copy(text);
+  char* stop = nullptr;
+  x = std::strtod(copy.c_str(), &stop);
+  const bool whole = !copy.empty() && stop == copy.c_str() + copy.size() &&
+                     copy.find_first_not_of("+-.0123456789eE") == std::string::npos &&
+                     copy.front() != '+';
+#endif
+  if (!whole || !std::isfinite(x)) {
     return std::nullopt;
   }
   return x;

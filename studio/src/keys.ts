@@ -63,14 +63,15 @@ function timeKey({ player, setSpeed, toggle, nextBody, nextTrail }: Actions, eve
 function taken(event: KeyboardEvent): boolean {
   const target = event.target;
   if (target instanceof HTMLSelectElement) return true;
-  if (target instanceof HTMLInputElement && target.type === "number") return true;
+  if (target instanceof HTMLInputElement && !["range", "checkbox", "radio"].includes(target.type)) return true;
+  if (target instanceof HTMLElement && target.isContentEditable) return true;
   const presses = event.key === " " || event.key === "Enter";
   return presses && target instanceof HTMLElement && target.matches("button, summary, input[type=checkbox]");
 }
 
 export function bindKeys(actions: Actions): void {
   document.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || taken(event)) return;
+    if (event.defaultPrevented || event.ctrlKey || event.metaKey || taken(event)) return;
     if (viewKey(actions, event) || (!event.altKey && timeKey(actions, event))) event.preventDefault();
   });
 }

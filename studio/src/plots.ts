@@ -62,6 +62,7 @@ class Plot {
     this.legend.className = "legend";
     this.place.className = "place";
     this.place.setAttribute("role", "img");
+    this.place.setAttribute("aria-label", title);
     quiet.forEach((label) => this.hidden.add(label));
     this.figure.append(this.caption, this.place, this.legend);
   }

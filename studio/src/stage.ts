@@ -134,15 +134,38 @@ export class Stage {
     });
   }
 
-  /** The body under a point of the canvas; -1 if there is none. */
-  pick(x: number, y: number): number {
-    const i = this.views().findIndex((v) => x >= v.x && x < v.x + v.width && y >= v.y && y < v.y + v.height);
-    if (i < 0) return -1;
-    const view = this.views()[i];
+  /** The view under a point of the canvas; the first one where there is none. */
+  viewAt(x: number, y: number): Rect {
+    const views = this.views();
+    return views.find((v) => x >= v.x && x < v.x + v.width && y >= v.y && y < v.y + v.height) ?? views[0];
+  }
+
+  private ray(x: number, y: number): Raycaster {
+    const view = this.viewAt(x, y);
     const ray = new Raycaster();
     this.camera.aspect = view.width / view.height;
     this.camera.updateProjectionMatrix();
+    this.camera.updateMatrixWorld();
     ray.setFromCamera(new Vector2((2 * (x - view.x)) / view.width - 1, 1 - (2 * (y - view.y)) / view.height), this.camera);
-    return this.worlds[i].pick(ray.ray.origin, ray.ray.direction, this.origins[i]);
+    return ray;
+  }
+
+  /** The body under a point of the canvas; -1 if there is none. Fixed ones only where they are asked for. */
+  pick(x: number, y: number, fixed = false): number {
+    const i = this.viewIndex(x, y);
+    if (i < 0) return -1;
+    const { ray } = this.ray(x, y);
+    return this.worlds[i].pick(ray.origin, ray.direction, this.origins[i], fixed);
+  }
+
+  private viewIndex(x: number, y: number): number {
+    return this.views().findIndex((v) => x >= v.x && x < v.x + v.width && y >= v.y && y < v.y + v.height);
+  }
+
+  /** Where a body is in the view under a point of the canvas, as it is drawn. */
+  placeOf(body: number, x: number, y: number): Vector3 {
+    const i = Math.max(0, this.viewIndex(x, y));
+    const at = this.worlds[i].states[body];
+    return new Vector3(at.px, at.py, at.pz).sub(this.origins[i]);
   }
 }

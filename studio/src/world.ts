@@ -383,22 +383,51 @@ export class World {
     this.shafts.commit();
   }
 
-  /** The nearest body on a ray, by its bounding ball; -1 if there is none. */
-  pick(from: Vector3, direction: Vector3, origin: Vector3): number {
+  /** The nearest body on a ray; else the nearest of those that move and are nearly on it; -1: none. */
+  pick(from: Vector3, direction: Vector3, origin: Vector3, fixed: boolean): number {
     let best = -1;
     let nearest = Infinity;
-    this.movers.forEach((i) => {
+    const candidates = fixed ? this.run.bodies.map((_, i) => i) : this.movers;
+    for (const i of candidates) {
+      const along = this.meets(i, from, direction, origin);
+      if (along < nearest) { nearest = along; best = i; }
+    }
+    if (best >= 0) return best;
+    for (const i of this.movers) {
       const at = this.states[i];
-      const r = boundingRadius(this.run.bodies[i].shape);
       this.p.set(at.px, at.py, at.pz).sub(origin).sub(from);
       const along = this.p.dot(direction);
       const miss = Math.sqrt(Math.max(0, this.p.lengthSq() - along * along));
-      if (along > 0 && along < nearest && miss < Math.max(r, 0.012 * along)) {
+      if (along > 0 && along < nearest && miss < Math.max(boundingRadius(this.run.bodies[i].shape), 0.012 * along)) {
         nearest = along;
         best = i;
       }
-    });
+    }
     return best;
+  }
+
+  /** How far along a ray it meets the body; infinite: not, or a half-space. */
+  private meets(i: number, from: Vector3, direction: Vector3, origin: Vector3): number {
+    const { shape } = this.run.bodies[i];
+    const at = this.states[i];
+    if (shape.kind === "half-space") return Infinity;
+    this.p.set(at.px, at.py, at.pz).sub(origin).sub(from);
+    if (shape.kind === "sphere") {
+      const along = this.p.dot(direction);
+      const inside = shape.x * shape.x - (this.p.lengthSq() - along * along);
+      return inside >= 0 && along > 0 ? along - Math.sqrt(inside) : Infinity;
+    }
+    // A box: the ray in its frame, between its three pairs of faces.
+    this.q.set(at.qx, at.qy, at.qz, at.qw).invert();
+    const p = this.p.applyQuaternion(this.q);
+    const d = this.s.copy(direction).applyQuaternion(this.q);
+    let enter = -Infinity, leave = Infinity;
+    for (const [x, v, h] of [[p.x, d.x, shape.x], [p.y, d.y, shape.y], [p.z, d.z, shape.z]]) {
+      const [one, other] = [(x - h) / v, (x + h) / v];
+      enter = Math.max(enter, Math.min(one, other));
+      leave = Math.min(leave, Math.max(one, other));
+    }
+    return leave > Math.max(enter, 0) ? Math.max(enter, 0) : Infinity;
   }
 
   /** The frame that was drawn last at t. */

@@ -14,6 +14,9 @@ const run = promisify(execFile);
 /** Runs kairos; rejects where it fails. */
 export const kairos = (...words) => run(program, words, { maxBuffer: 1 << 28 });
 
+/** What `./studio` builds. */
+export const studioPage = process.env.KAIROS_STUDIO ?? join(root, "build/studio/studio.html");
+
 export async function folder() {
   const path = await mkdtemp(join(tmpdir(), "kairos-studio-"));
   return { path, remove: () => rm(path, { recursive: true, force: true }) };
@@ -28,7 +31,7 @@ export function browser() {
 }
 
 /** Opens a file without a network; `said` collects what a silent page does not say. */
-export async function open(chrome, file, options = {}) {
+export async function open(chrome, file, { ready = () => window.kairos !== undefined, hash = "", ...options } = {}) {
   const context = await chrome.newContext({ viewport: { width: 1280, height: 900 }, offline: true, acceptDownloads: true, ...options });
   const page = await context.newPage();
   const said = [];
@@ -38,8 +41,8 @@ export async function open(chrome, file, options = {}) {
   page.on("request", (request) => {
     if (!/^(file|data|blob):/.test(request.url())) asked.push(request.url());
   });
-  page.setDefaultTimeout(180_000); // software rendering on a busy machine
-  await page.goto(pathToFileURL(file).href, { timeout: 180_000 });
-  await page.waitForFunction(() => window.kairos !== undefined, undefined, { timeout: 180_000 });
+  page.setDefaultTimeout(60_000); // software rendering on a busy machine
+  await page.goto(pathToFileURL(file).href + hash, { timeout: 60_000 });
+  await page.waitForFunction(ready, undefined, { timeout: 60_000 });
   return { page, context, said, asked };
 }
