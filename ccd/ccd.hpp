@@ -9,6 +9,7 @@
 #include "ccd/contact_patch.hpp"
 #include "ccd/dynamic_tree.hpp"
 #include "ccd/linear/linear_impact.hpp"
+#include "ccd/mesh/mesh_queries.hpp"
 #include "ccd/nearest_points.hpp"
 #include "ccd/pair_overlap.hpp"
 #include "ccd/sat.hpp"

@@ -1,15 +1,11 @@
 #pragma once
 
-#include "core/pose.hpp"
+#include "core/mesh_data.hpp"
 
-#include <array>
 #include <span>
 
 namespace kairos {
 inline namespace core {
-
-/// Corners of a triangle of a mesh, counterclockwise seen from outside.
-using Triangle = std::array<std::size_t, 3>;
 
 /// Of a homogeneous solid of density 1 (kg/m^3): times a density, or a mass over the volume.
 struct MassProperties {

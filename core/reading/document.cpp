@@ -17,9 +17,6 @@ namespace {
 
 using FileName = std::shared_ptr<const std::string>;
 
-/// What a person wrote is shorter, bytes: a device without an end is not read for ever.
-constexpr std::size_t longest_text = std::size_t{1} << 28;
-
 Value convert(const toml::node& node, const FileName& file);
 
 Table convert(const toml::table& source, const FileName& file) {
@@ -160,7 +157,7 @@ std::string to_toml(const Table& root) {
   return std::move(text).str();
 }
 
-std::string read_text_file(const std::string& path) {
+std::string read_text_file(const std::string& path, std::size_t longest) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {
     throw InputError(path, 0, "", "is a directory; a file is needed");
@@ -178,9 +175,9 @@ std::string read_text_file(const std::string& path) {
   while (file) {
     file.read(block.data(), static_cast<std::streamsize>(block.size()));
     const auto count = static_cast<std::size_t>(file.gcount());
-    if (text.size() + count > longest_text) {
+    if (text.size() + count > longest) {
       throw InputError(path, 0, "",
-                       fmt::format("is longer than {} bytes, or has no end", longest_text));
+                       fmt::format("is longer than {} bytes, or has no end", longest));
     }
     text.append(block.data(), count);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -50,8 +51,10 @@ struct Value {
 /// A table as TOML: plain keys first, then tables, then lists of tables. `parse_document` reads the
 /// same values back, to the last bit.
 [[nodiscard]] std::string to_toml(const Table& root);
-/// The whole content of a file. Throws `InputError` if it cannot be read.
-[[nodiscard]] std::string read_text_file(const std::string& path);
+/// The whole content of a file. Throws `InputError` if it cannot be read, or is longer than
+/// `longest` bytes: a device without an end is not read for ever.
+[[nodiscard]] std::string read_text_file(const std::string& path,
+                                         std::size_t longest = std::size_t{1} << 28);
 
 }  // namespace core
 }  // namespace kairos

@@ -2,6 +2,7 @@
 
 #include "core/shape.hpp"
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,16 @@ struct OffModel {
 /// line for everything else: a count that is not met, an index of no vertex, a number that is none.
 [[nodiscard]] OffModel read_off(const std::string& path);
 [[nodiscard]] OffModel parse_off(std::string_view text, const std::string& path);
+
+/// What listens to a model that is read, so that it need not be kept as a list of lists.
+class OffSink {
+ public:
+  virtual ~OffSink() = default;
+  virtual void vertex(const Vector3& p, int line) = 0;
+  /// Three corners or more, each a vertex that was told; `line` of the file.
+  virtual void face(std::span<const std::size_t> corners, int line) = 0;
+};
+void parse_off(std::string_view text, const std::string& path, OffSink& sink);
 
 /// The box of 3.3: half way between the greatest and the least along each axis of the model.
 struct FittedBox {

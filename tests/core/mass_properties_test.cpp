@@ -37,16 +37,17 @@ Mesh box_mesh(const Vector3& half) {
 /// Each triangle becomes four, their corners on the unit sphere.
 Mesh finer(const Mesh& mesh) {
   Mesh result{mesh.vertices, {}};
-  std::map<std::pair<std::size_t, std::size_t>, std::size_t> middles;
-  const auto middle = [&](std::size_t i, std::size_t j) {
-    const auto [at, is_new] = middles.try_emplace(std::minmax(i, j), result.vertices.size());
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+  const auto middle = [&](std::uint32_t i, std::uint32_t j) {
+    const auto [at, is_new] =
+        middles.try_emplace(std::minmax(i, j), static_cast<std::uint32_t>(result.vertices.size()));
     if (is_new) {
       result.vertices.push_back((mesh.vertices[i] + mesh.vertices[j]).normalized());
     }
     return at->second;
   };
   for (const Triangle& t : mesh.triangles) {
-    const std::size_t a = middle(t[0], t[1]), b = middle(t[1], t[2]), c = middle(t[2], t[0]);
+    const std::uint32_t a = middle(t[0], t[1]), b = middle(t[1], t[2]), c = middle(t[2], t[0]);
     result.triangles.insert(result.triangles.end(),
                             {{t[0], a, c}, {t[1], b, a}, {t[2], c, b}, {a, b, c}});
   }

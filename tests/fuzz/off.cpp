@@ -29,7 +29,8 @@ std::vector<Triangle> triangles(const OffModel& model) {
   std::vector<Triangle> made;
   for (const auto& face : model.faces) {
     for (std::size_t k = 2; k < face.size(); ++k) {
-      made.push_back({face[0], face[k - 1], face[k]});
+      made.push_back({static_cast<std::uint32_t>(face[0]), static_cast<std::uint32_t>(face[k - 1]),
+                      static_cast<std::uint32_t>(face[k])});
     }
   }
   return made;

@@ -1,0 +1,7 @@
+// A mesh as STL.
+#include "tests/fuzz/mesh_check.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  kairos::fuzz::check_mesh_file({reinterpret_cast<const char*>(data), size}, "model.stl");
+  return 0;
+}
