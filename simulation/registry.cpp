@@ -17,6 +17,7 @@
 #include "ccd/swept_box.hpp"
 #include "core/error.hpp"
 #include "core/laws/newton_law.hpp"
+#include "core/laws/simultaneous_laws.hpp"
 #include "core/laws/thesis_law.hpp"
 #include "core/model.hpp"
 #include "core/nearest_name.hpp"
@@ -112,7 +113,8 @@ std::span<const std::shared_ptr<const ContactDetector>> detectors() {
 }
 
 std::span<const std::shared_ptr<const ImpactLaw>> impact_laws() {
-  static const Entries<ImpactLaw> entries{make_thesis_law(), make_newton_law()};
+  static const Entries<ImpactLaw> entries{make_thesis_law(), make_newton_law(), make_moreau_law(),
+                                          make_reflections_law()};
   return entries;
 }
 

@@ -1,5 +1,8 @@
 #include "core/laws/newton_law.hpp"
 
+#include "core/contacts/group_impacts.hpp"
+#include "core/contacts/group_law.hpp"
+
 #include <limits>
 #include <utility>
 
@@ -128,8 +131,17 @@ double surplus(const BodyState& computed, const Side<long double>& exact) {
   return static_cast<double>(energy);
 }
 
-class NewtonLaw final : public ImpactLaw {
+class NewtonLaw final : public ImpactLaw, public GroupLaw {
  public:
+  /// Bodies that merely touch are struck one pair after the other; what is held together takes an
+  /// impact as one, for its contacts have no velocity of which a part could be returned.
+  [[nodiscard]] bool takes_what_touches() const override { return false; }
+  [[nodiscard]] Eigen::VectorXd strike(const ContactSystem& system,
+                                       const Eigen::VectorXd& restitution,
+                                       std::vector<Twist>& v) const override {
+    return newton_group(system, restitution, v);
+  }
+
   [[nodiscard]] LawInfo info() const override {
     return {"newton", true, "restitution at the contact point, with rotation, without friction"};
   }

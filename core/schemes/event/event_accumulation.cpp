@@ -105,7 +105,8 @@ double EventAccumulation::rest_tolerance(BodyIndex a, BodyIndex b, double e) con
   return (dies_down ? small_rest * extent : 0.0) + 4.0 * epsilon * coordinate;
 }
 
-std::string EventAccumulation::after_impact(BodyIndex a, BodyIndex b, double approach, Instant t) {
+EventAccumulation::Finding EventAccumulation::after_impact(BodyIndex a, BodyIndex b,
+                                                           double approach, Instant t) {
   const double e = restitution(a, b);
   const double tolerance = rest_tolerance(a, b, e);
   const bool rest = rests(a, b, approach, tolerance, t);
@@ -119,31 +120,39 @@ std::string EventAccumulation::after_impact(BodyIndex a, BodyIndex b, double app
     resting = resting && histories_[i].rests();
   }
   if (resting) {
-    return fmt::format(
-        "accumulation: {} come to rest on each other: what is left of their hops is "
-        "below {:.2g} m; what lasts is kept for a ball on one face only; {}",
-        run_.names(a, b), tolerance, part_them);
+    return {.kind = Finding::Kind::rests,
+            .reason = fmt::format("accumulation: {} come to rest on each other: what is left of "
+                                  "their hops is below {:.2g} m",
+                                  run_.names(a, b), tolerance),
+            .bodies = {a, b}};
   }
   for (const BodyIndex i : {a, b}) {
     if (!run_.model.is_free(i)) {
       continue;
     }
     const ImpactHistory& history = histories_[i];
-    std::string reason;
     if (worth_a_look(history.chain())) {
-      reason = squeeze(i, t);
-      if (reason.empty()) {
-        reason = collapse(a, b, t);
+      if (std::string reason = squeeze(i, t); !reason.empty()) {
+        return {.kind = Finding::Kind::squeezed, .reason = std::move(reason), .bodies = {a, b}};
       }
     }
-    if (reason.empty() && history.creeps()) {
-      reason = fmt::format(
-          "accumulation: impacts of {} follow each other without end, on ways "
-          "below {:.2g} m; what lasts is kept for a ball on one face only; {}",
-          run_.names(a, b), tolerance, part_them);
+    // The last impacts of a collapse are no way apart: each may be the one that ends it.
+    if (worth_a_look(history.chain()) || history.on_no_way()) {
+      if (Finding finding = collapse(a, b, t); finding.kind != Finding::Kind::none) {
+        if (history.creeps()) {
+          finding.kind = Finding::Kind::creeps;
+        }
+        return finding;
+      }
     }
-    if (!reason.empty()) {
-      return reason;
+    if (history.creeps()) {
+      std::vector<BodyIndex> bodies{a, b};
+      bodies.insert(bodies.end(), history.partners().begin(), history.partners().end());
+      return {.kind = Finding::Kind::creeps,
+              .reason = fmt::format("accumulation: impacts of {} follow each other without end, on "
+                                    "ways below {:.2g} m",
+                                    run_.names(a, b), tolerance),
+              .bodies = std::move(bodies)};
     }
   }
   return {};
@@ -193,7 +202,7 @@ std::vector<BodyPair> EventAccumulation::cluster_pairs(BodyIndex a, BodyIndex b)
 }
 
 /// The bodies that met lately, followed in relative coordinates: nothing rounds there.
-std::string EventAccumulation::collapse(BodyIndex a, BodyIndex b, Instant t) const {
+EventAccumulation::Finding EventAccumulation::collapse(BodyIndex a, BodyIndex b, Instant t) const {
   std::vector<Joined> joined;
   ImpactCluster cluster;
   double horizon = std::numeric_limits<double>::infinity();
@@ -233,15 +242,21 @@ std::string EventAccumulation::collapse(BodyIndex a, BodyIndex b, Instant t) con
   if (fate.kind != ClusterFate::Kind::accumulates) {
     return {};
   }
+  Finding finding;
+  finding.kind = Finding::Kind::collapse;
+  finding.remaining = fate.duration;
+  finding.pairs = joined.size();
   std::string names;
   for (const Joined& j : joined) {
     names += (names.empty() ? "" : ", ") + run_.names(j.a.body, j.b.body);
+    finding.bodies.push_back(j.a.body);
+    finding.bodies.push_back(j.b.body);
   }
-  return fmt::format(
-      "accumulation: infinitely many impacts before t = {} s, between {} (inelastic "
-      "collapse): they end in touch, and what lasts is kept for a ball on one face "
-      "only; {}",
-      (t + fate.duration).seconds, names, part_them);
+  finding.reason = fmt::format(
+      "accumulation: infinitely many impacts before t = {} s, between {} (inelastic collapse): "
+      "they end in touch",
+      (t + fate.duration).seconds, names);
+  return finding;
 }
 
 /// Between two bodies that nothing stops from meeting: impacts follow each other ever faster until

@@ -23,9 +23,23 @@ class EventAccumulation {
   /// coordinates cannot resolve.
   [[nodiscard]] double rest_tolerance(BodyIndex a, BodyIndex b, double e) const;
 
-  /// An impact that met at `approach`, m/s, left the two at `now`: why the run cannot go on past
-  /// it; empty where it can.
-  [[nodiscard]] std::string after_impact(BodyIndex a, BodyIndex b, double approach, Instant t);
+  /// What impacts come to.
+  struct Finding {
+    enum class Kind {
+      none,      ///< they go on
+      rests,     ///< what is left of the hops is nothing
+      collapse,  ///< infinitely many in a finite time, after which the bodies are in touch
+      creeps,    ///< they follow each other on no way at all
+      squeezed,  ///< no room is left for them
+    };
+    Kind kind = Kind::none;
+    std::string reason;             ///< why the run could not go on past it
+    double remaining = 0.0;         ///< until a collapse is over, s
+    std::vector<BodyIndex> bodies;  ///< who takes part
+    std::size_t pairs = 0;          ///< how many of them collapse
+  };
+  /// An impact that met at `approach`, m/s, left the two at `now`.
+  [[nodiscard]] Finding after_impact(BodyIndex a, BodyIndex b, double approach, Instant t);
   /// A look at a pair at t that changed nothing: true where looks get nowhere, each within
   /// `resolution`, s, of the one before.
   [[nodiscard]] bool stalls(BodyIndex a, BodyIndex b, Instant t, double resolution);
@@ -35,7 +49,7 @@ class EventAccumulation {
  private:
   [[nodiscard]] bool rests(BodyIndex a, BodyIndex b, double approach, double tolerance,
                            Instant t) const;
-  [[nodiscard]] std::string collapse(BodyIndex a, BodyIndex b, Instant t) const;
+  [[nodiscard]] Finding collapse(BodyIndex a, BodyIndex b, Instant t) const;
   [[nodiscard]] std::string squeeze(BodyIndex i, Instant t) const;
   [[nodiscard]] std::vector<BodyPair> cluster_pairs(BodyIndex a, BodyIndex b) const;
   [[nodiscard]] double restitution(BodyIndex a, BodyIndex b) const;

@@ -16,12 +16,14 @@ enum class Due : std::uint8_t {
   epoch_end,       ///< what was predicted ends here, for all
   segment_end,     ///< the motion of `a` ends there; the next one is due
   support_ends,    ///< `a` leaves the surface `b`
+  mode_ends,       ///< the patch of `a` and `b` no longer carries what it carries
   contact_begins,  ///< the bounces of `a` on `b` have died down: told, nothing changes
   field_entered,   ///< between `a` and `b`
   field_left,
   clear_of_hand,  ///< what a hand has let go of is clear of it
   horizon,        ///< pairs of `a` have been predicted up to here
   recheck,        ///< ask the detector again
+  stays,          ///< two solids touch, and would go on to do so
   impact,
 };
 constexpr Due last_of(Due) { return Due::impact; }

@@ -1,14 +1,17 @@
 #include "core/schemes/event/event_contacts.hpp"
 
 #include "core/archive.hpp"
+#include "core/contacts/group_law.hpp"
 #include "core/impact_check.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace kairos {
 inline namespace core {
@@ -17,16 +20,20 @@ namespace {
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// Looks that go on by less than this part of the motions get nowhere.
 constexpr double least_progress = 1e-12;
+/// An impact among bodies in touch is handed on so often at most, for each of them.
+constexpr std::size_t most_rounds = 1000;
 /// `contact_begins` of a contact that has been told.
 constexpr Instant told{-1.0, 0.0};
 
 }  // namespace
 
-EventContacts::EventContacts(EventRun& run, EventMotions& motions, EventPredictor& predictor)
+EventContacts::EventContacts(EventRun& run, EventMotions& motions, EventPredictor& predictor,
+                             ContactGraph& graph)
     : run_(run),
       motions_(motions),
       predictor_(predictor),
       accumulation_(run, motions),
+      modes_(run, motions, predictor, accumulation_, graph),
       bodies_(run.model.size()) {}
 
 // --- Impacts -----------------------------------------------------------------------------------
@@ -43,7 +50,11 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double patience,
   Event event{.time = t, .kind = EventKind::impact, .a = a, .b = b};
   event.contact = contact_at(a, b, t, patience);
   const double approach = normal_velocity(event.contact, motions_.now(a), motions_.now(b));
+  const std::array<BodyIndex, 2> pair{a, b};
   if (!decided && approach >= 0.0 && patience > 0.0) {
+    if (!could_be_supported(a, b, t) && settle(pair, t, {.pressed = BodyPair{a, b}})) {
+      return;
+    }
     return look_again(a, b, t, patience);
   }
   if (approach >= 0.0 && run_.law.info().needs_contact) {
@@ -55,34 +66,348 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double patience,
                                  "m apart; allowed: a larger --tolerance, or another detector",
                                  run_.detector.info().name, run_.names(a, b), event.contact.gap));
   }
+  if (strike_group({a, b}, std::max(-approach, 0.0), t)) {
+    return;
+  }
+  std::vector<BodyIndex> group;
+  if (modes_.holds(a) || modes_.holds(b)) {
+    group = modes_.group(pair);
+    modes_.bring_group(group, t);
+  }
+  strike(event);
+  if (still_approaching(event, approach, t)) {
+    return;
+  }
+  if (!group.empty()) {
+    return hand_on(event, std::max(-approach, 0.0), std::move(group), t);
+  }
+  if (lands(a, b, event.contact, t)) {
+    return;
+  }
+  using Kind = EventAccumulation::Finding::Kind;
+  const auto finding = accumulation_.after_impact(a, b, std::max(-approach, 0.0), t);
+  if (finding.kind == Kind::none) {
+    return relaunch(a, b, t);
+  }
+  if (finding.kind != Kind::squeezed) {
+    const bool unite = finding.kind != Kind::rests;
+    if (settle(pair, t,
+               {.unloaded = unite,
+                .unite = unite,
+                .remaining = finding.remaining,
+                .pairs = finding.pairs})) {
+      return;
+    }
+    if (finding.kind == Kind::collapse) {
+      return relaunch(a, b, t);  // not over yet
+    }
+  }
+  depart(a, b, t);  // what the last frame shows, and the ledger has booked
+  run_.stop(t, finding.kind == Kind::squeezed ? finding.reason
+                                              : fmt::format("{}; {}", finding.reason, unkept()));
+}
+
+/// The impact law acts, and the ledger knows.
+void EventContacts::strike(Event& event) {
   Vector3 unused_a = Vector3::Zero();  // solids that push (none does) would need fields
   Vector3 unused_b = Vector3::Zero();
   const ImpactEnergy energy =
-      run_.exchange(event, motions_.now(a), motions_.now(b), unused_a, unused_b);
+      run_.exchange(event, motions_.now(event.a), motions_.now(event.b), unused_a, unused_b);
   assert(!run_.law.info().needs_contact ||
          broken_restitution(event, event.contact.restitution).empty());
   run_.ledger.add(EnergyLine::restitution_loss, energy.restitution_loss);
   run_.ledger.add(EnergyLine::driven_work, energy.driven_work);
   run_.ledger.add(EnergyLine::conveyor_and_hand, energy.conveyor_and_hand);
+}
+
+/// After a law that does not part them nothing can go on.
+bool EventContacts::still_approaching(const Event& event, double approach, Instant t) {
+  const auto [a, b] = std::pair{event.a, event.b};
   const double rebound = normal_velocity(event.contact, event.after_a, event.after_b);
   const double scale =
       std::abs(approach) + event.after_a.twist.linear.norm() + event.after_b.twist.linear.norm();
-  if (rebound < -16.0 * epsilon * scale) {  // roundoff of a product and a few sums
-    depart(a, b, t);
-    return run_.stop(
-        t, fmt::format("still approaching: the impact law '{}' leaves {} approaching each "
-                       "other at {} m/s",
-                       run_.law.info().name, run_.names(a, b), -rebound));
+  if (!(rebound < -16.0 * epsilon * scale)) {  // roundoff of a product and a few sums
+    return false;
   }
-  if (lands(a, b, event.contact, t)) {
+  depart(a, b, t);
+  run_.stop(t, fmt::format("still approaching: the impact law '{}' leaves {} approaching each "
+                           "other at {} m/s",
+                           run_.law.info().name, run_.names(a, b), -rebound));
+  return true;
+}
+
+/// What moves by less than roundoff of the fastest does not move.
+void EventContacts::leave_at_rest(const EventModes::GroupImpact& impact,
+                                  std::vector<Twist>& v) const {
+  double fastest = 0.0;
+  for (const Twist& before : impact.velocities) {
+    fastest = std::max(fastest, before.linear.norm());
+  }
+  const double least = 64.0 * epsilon * fastest;
+  for (std::size_t k = 0; k < v.size(); ++k) {
+    if (!run_.model.is_free(impact.bodies[k])) {
+      continue;
+    }
+    const double radius = bounding_radius(run_.model.shape(impact.bodies[k]));
+    for (int axis = 0; axis < 3; ++axis) {
+      double& linear = v[k].linear[axis];
+      double& angular = v[k].angular[axis];
+      linear = std::abs(linear) <= least ? 0.0 : linear;
+      angular = std::abs(angular) * radius <= least ? 0.0 : angular;
+    }
+  }
+}
+
+/// A law that knows groups strikes all of them at once; false where there is no group, or the law
+/// knows none.
+bool EventContacts::strike_group(const BodyPair& pair, double approach, Instant t) {
+  const auto* law = dynamic_cast<const GroupLaw*>(&run_.law);
+  const bool held = modes_.holds(pair.first) || modes_.holds(pair.second);
+  if (law == nullptr || !(held || law->takes_what_touches())) {
+    return false;
+  }
+  EventModes::GroupImpact impact = modes_.impact_group(pair, t, law->takes_what_touches());
+  if (!impact.refusal.empty() || impact.pairs.size() < (held ? 1U : 2U)) {
+    return false;
+  }
+  std::vector<Twist> velocities = impact.velocities;
+  const Eigen::VectorXd impulses = law->strike(impact.system, impact.restitution, velocities);
+  if (impulses.size() == 0) {
+    return false;
+  }
+  leave_at_rest(impact, velocities);
+  std::vector<BodyState> before;
+  std::vector<BodyIndex> bodies;
+  for (std::size_t k = 0; k < impact.bodies.size(); ++k) {
+    const BodyIndex i = impact.bodies[k];
+    if (run_.model.is_free(i)) {
+      motions_.book(i, t);
+      motions_.bring(i, t);
+      bodies.push_back(i);
+    } else if (run_.model.mobility(i) == Mobility::driven) {
+      motions_.bring(i, t);
+    }
+    before.push_back(motions_.now(i));
+    if (run_.model.is_free(i)) {
+      motions_.now(i).twist = velocities[k];
+      run_.account.struck(i, before.back(), motions_.now(i));
+    }
+  }
+  // p (u- + u+) / 2 of each row is what it did to the energy, but for the work of what is driven.
+  for (std::size_t r = 0; r < impact.system.rows.size(); ++r) {
+    const ContactRow& row = impact.system.rows[r];
+    const double p = impulses[static_cast<Eigen::Index>(r)];
+    if (p == 0.0) {
+      continue;
+    }
+    const double u = impact.system.rate(row, impact.velocities);
+    run_.ledger.add(EnergyLine::restitution_loss,
+                    0.5 * p * (u + impact.system.rate(row, velocities)));
+    for (const std::size_t k : {row.a, row.b}) {
+      if (run_.model.mobility(impact.bodies[k]) == Mobility::driven) {
+        const Twist& v = impact.velocities[k];
+        const Vector3& arm = k == row.a ? row.arm_a : row.arm_b;
+        run_.ledger.add(EnergyLine::driven_work,
+                        (k == row.a ? p : -p) * row.direction.dot(v.linear + v.angular.cross(arm)));
+      }
+    }
+  }
+  tell_group(impact, impulses, before, pair, t);
+  go_on_from(bodies, pair, approach, t);
+  return true;
+}
+
+/// An impact of each pair that took an impulse, that which began it first; its contact is where
+/// their impulses act together.
+void EventContacts::tell_group(const EventModes::GroupImpact& impact,
+                               const Eigen::VectorXd& impulses, std::span<const BodyState> before,
+                               const BodyPair& first, Instant t) {
+  const auto state = [&](BodyIndex i) -> const BodyState& {
+    const auto place = std::find(impact.bodies.begin(), impact.bodies.end(), i);
+    return before[static_cast<std::size_t>(place - impact.bodies.begin())];
+  };
+  const auto is_first = [&](const BodyPair& p) {
+    return p == first || p == BodyPair{first.second, first.first};
+  };
+  double fastest = 0.0;
+  for (const BodyState& s : before) {
+    fastest = std::max(fastest, s.twist.linear.norm());
+  }
+  const double resolved = 64.0 * epsilon * fastest;
+  const auto tell = [&](std::size_t p) {
+    const auto [a, b] = impact.pairs[p];
+    Event event{.time = t, .kind = EventKind::impact, .a = a, .b = b};
+    double total = 0.0;
+    Vector3 point = Vector3::Zero();
+    for (std::size_t r = 0; r < impact.pair_of_row.size(); ++r) {
+      const double share = impulses[static_cast<Eigen::Index>(r)];
+      if (impact.pair_of_row[r] == p && share > 0.0) {
+        const ContactRow& row = impact.system.rows[r];
+        total += share;
+        point += share * (impact.system.bodies[row.a].position + row.arm_a);
+        event.contact.normal = row.direction;
+        event.contact.gap = impact.gaps[r];
+      }
+    }
+    if (total == 0.0) {
+      return;
+    }
+    const bool only_handed_on =
+        (state(a).twist.linear - motions_.now(a).twist.linear).norm() <= resolved &&
+        (state(b).twist.linear - motions_.now(b).twist.linear).norm() <= resolved;
+    if (only_handed_on && !is_first(impact.pairs[p])) {
+      return;
+    }
+    event.contact.point = point / total;
+    event.contact.restitution = run_.model.restitution(a, b);
+    event.contact.friction = run_.model.friction(a, b);
+    event.before_a = state(a);
+    event.before_b = state(b);
+    event.after_a = motions_.now(a);
+    event.after_b = motions_.now(b);
+    ++run_.cost.impacts;
+    run_.note(event);
+  };
+  for (const bool turn : {true, false}) {
+    for (std::size_t p = 0; p < impact.pairs.size(); ++p) {
+      if (is_first(impact.pairs[p]) == turn) {
+        tell(p);
+      }
+    }
+  }
+}
+
+/// An impact on bodies that are held together goes on through their patches, pair by pair, always
+/// where they approach fastest, until none does; then what is left of the group is settled.
+void EventContacts::hand_on(const Event& first, double approach, std::vector<BodyIndex> bodies,
+                            Instant t) {
+  const std::array<BodyPair, 1> struck{BodyPair{first.a, first.b}};
+  const std::size_t most = most_rounds * bodies.size();
+  for (std::size_t round = 0; run_.law.info().needs_contact; ++round) {
+    const auto worst = modes_.worst_approach(bodies, struck);
+    if (!worst) {
+      break;
+    }
+    if (round == most) {
+      set_free(bodies, t);
+      return run_.stop(t, fmt::format("accumulation: an impact of {} is handed on between bodies "
+                                      "in touch more than {} times; {}",
+                                      run_.names(first.a, first.b), most, part_them));
+    }
+    Event event{.time = t, .kind = EventKind::impact, .a = worst->a, .b = worst->b};
+    event.contact = worst->contact;
+    strike(event);
+  }
+  go_on_from(bodies, {first.a, first.b}, approach, t);
+}
+
+/// What an impact has left of a group is settled, or flies apart.
+void EventContacts::go_on_from(std::span<const BodyIndex> bodies, const BodyPair& first,
+                               double approach, Instant t) {
+  using Kind = EventAccumulation::Finding::Kind;
+  const auto finding = accumulation_.after_impact(first.first, first.second, approach, t);
+  const bool unite = finding.kind == Kind::collapse || finding.kind == Kind::creeps;
+  if (settle(bodies, t,
+             {.unloaded = unite,
+              .unite = unite,
+              .remaining = finding.remaining,
+              .pairs = finding.pairs})) {
     return;
   }
-  const std::string reason = accumulation_.after_impact(a, b, std::max(-approach, 0.0), t);
-  if (!reason.empty()) {
-    depart(a, b, t);  // what the last frame shows, and the ledger has booked
-    return run_.stop(t, reason);
+  set_free(bodies, t);
+  if (finding.kind != Kind::none && finding.kind != Kind::collapse) {
+    run_.stop(t, finding.kind == Kind::squeezed ? finding.reason
+                                                : fmt::format("{}; {}", finding.reason, unkept()));
   }
-  relaunch(a, b, t);
+}
+
+// --- Groups ------------------------------------------------------------------------------------
+
+bool EventContacts::settle(std::span<const BodyIndex> seeds, Instant t,
+                           const EventModes::Wish& wish) {
+  const auto adopt = [this](BodyIndex ball) {
+    return std::exchange(bodies_[ball].contact_begins, Instant::never());
+  };
+  return modes_.settle(seeds, t, adopt, wish);
+}
+
+/// Why what stays in touch is not kept, for a person.
+std::string EventContacts::unkept() const {
+  return modes_.why_not().empty() ? std::string(part_them)
+                                  : fmt::format("{}; {}", modes_.why_not(), part_them);
+}
+
+/// Nothing is held any longer: each flies on from `now`.
+void EventContacts::set_free(std::span<const BodyIndex> bodies, Instant t) {
+  const auto changes = modes_.part(bodies);
+  for (const BodyIndex i : bodies) {
+    motions_.bring_others(i, t);
+    if (motions_.support(i)) {
+      resume_support(i, t);
+    }
+    motions_.launch(i, t);
+  }
+  modes_.tell(changes, t);
+  for (const BodyIndex i : bodies) {
+    predictor_.predict(i, t);
+  }
+}
+
+void EventContacts::settle_anew(BodyIndex i, Instant t) {
+  const std::array<BodyIndex, 1> seed{i};
+  const std::vector<BodyIndex> bodies = modes_.group(seed);
+  modes_.bring_group(bodies, t);
+  if (settle(bodies, t)) {
+    return;
+  }
+  const std::string why = unkept();
+  set_free(bodies, t);
+  run_.stop(t, fmt::format("contact: what '{}' and what it touches do from here on is not kept: {}",
+                           run_.model.body(i).name, why));
+}
+
+void EventContacts::take_out(BodyIndex i, Instant t) {
+  if (!modes_.holds(i)) {
+    return;
+  }
+  const std::array<BodyIndex, 1> taken{i};
+  std::vector<BodyIndex> others = modes_.group(taken);
+  modes_.bring_group(others, t);
+  const auto changes = modes_.part(taken);
+  modes_.tell(changes, t);
+  std::erase(others, i);
+  if (!others.empty() && !settle(others, t)) {
+    set_free(others, t);
+  }
+}
+
+void EventContacts::stay(BodyIndex a, BodyIndex b, Instant t) {
+  const std::array<BodyIndex, 2> pair{a, b};
+  for (const BodyIndex i : pair) {
+    if (run_.model.is_free(i)) {
+      motions_.book(i, t);
+    }
+    if (run_.model.mobility(i) != Mobility::fixed) {
+      motions_.bring(i, t);
+    }
+  }
+  const Contact contact = contact_at(a, b, t, 0.0);
+  if (lands(a, b, contact, t) || settle(pair, t, {.unloaded = true})) {
+    return;
+  }
+  depart(a, b, t);
+  run_.stop(t, fmt::format("accumulation: {} stay in contact; {}", run_.names(a, b), unkept()));
+}
+
+/// Whether one of the two is a ball that a face of the other could support.
+bool EventContacts::could_be_supported(BodyIndex a, BodyIndex b, Instant t) const {
+  for (const auto& [ball, surface] : {std::pair{a, b}, std::pair{b, a}}) {
+    if (run_.model.is_free(ball) && !run_.model.is_free(surface) &&
+        std::holds_alternative<Sphere>(run_.model.shape(ball)) && motions_.of(surface).start <= t) {
+      return true;
+    }
+  }
+  return false;
 }
 
 /// In touch without approaching: no impact, and nothing that would be told. The two go on as they
@@ -91,11 +416,22 @@ void EventContacts::touch(BodyIndex a, BodyIndex b, const Contact& contact, Inst
   if (lands(a, b, contact, t)) {
     return;
   }
+  const std::array<BodyIndex, 2> pair{a, b};
+  if (modes_.holds(a) || modes_.holds(b)) {
+    const std::vector<BodyIndex> bodies = modes_.group(pair);
+    modes_.bring_group(bodies, t);
+    return settle(bodies, t, {.unloaded = true}) ? void() : set_free(bodies, t);
+  }
+  if (settle(pair, t, {.pressed = BodyPair{a, b}})) {
+    return;
+  }
   if (accumulation_.stalls(a, b, t, least_progress * run_.epoch)) {
+    if (settle(pair, t, {.unloaded = true})) {
+      return;
+    }
     depart(a, b, t);
-    return run_.stop(t, fmt::format("accumulation: {} stay in touch; what lasts is kept for a ball "
-                                    "on one face only; {}",
-                                    run_.names(a, b), part_them));
+    return run_.stop(t,
+                     fmt::format("accumulation: {} stay in touch; {}", run_.names(a, b), unkept()));
   }
   relaunch(a, b, t);
 }
@@ -123,9 +459,13 @@ Contact EventContacts::contact_at(BodyIndex a, BodyIndex b, Instant t, double pa
 void EventContacts::look_again(BodyIndex a, BodyIndex b, Instant t, double patience) {
   const double window = std::min({motions_.of(a).duration, motions_.of(b).duration, run_.epoch});
   if (accumulation_.stalls(a, b, t, least_progress * window)) {
+    const std::array<BodyIndex, 2> pair{a, b};
+    if (settle(pair, t, {.unloaded = true})) {
+      return;
+    }
     return run_.stop(t, fmt::format("accumulation: whether {} touch is undecided again and again, "
                                     "and time does not go on; {}",
-                                    run_.names(a, b), part_them));
+                                    run_.names(a, b), unkept()));
   }
   run_.agenda.push(t + patience, Due::recheck, a, b);
 }
@@ -155,12 +495,18 @@ bool EventContacts::lands(BodyIndex a, BodyIndex b, const Contact& contact, Inst
       continue;
     }
     if (motions_.support(ball) && held > 0.0 && !leaves_for(ball, *support, tolerance, t)) {
+      const std::array<BodyIndex, 2> pair{a, b};
+      if (settle(pair, t)) {
+        return true;
+      }
+      if (!accumulation_.stalls(a, b, t, least_progress * run_.epoch)) {
+        continue;  // one surface after the other slows it down
+      }
+      const BodyIndex other = motions_.support(ball)->surface;
       depart(a, b, t);
-      run_.stop(t, fmt::format("accumulation: '{}' comes to rest between '{}' and '{}'; what lasts "
-                               "is kept for a ball on one face only; {}",
-                               run_.model.body(ball).name,
-                               run_.model.body(motions_.support(ball)->surface).name,
-                               run_.model.body(surface).name, part_them));
+      run_.stop(t, fmt::format("accumulation: '{}' comes to rest between '{}' and '{}'; {}",
+                               run_.model.body(ball).name, run_.model.body(other).name,
+                               run_.model.body(surface).name, unkept()));
       return true;
     }
     if (pressing > 0.0) {
@@ -282,7 +628,8 @@ void EventContacts::resume_support(BodyIndex i, Instant t) {
   end_contact(i, t);
 }
 
-void EventContacts::begin_contact(BodyIndex i, Instant t) {
+void EventContacts::begin_contact(BodyIndex i, BodyIndex j, Instant t) {
+  modes_.begin_contact(i, j, t);
   Instant& begins = bodies_[i].contact_begins;
   if (motions_.support(i) && begins == t) {
     run_.time = t;
@@ -329,12 +676,21 @@ void EventContacts::cross_field(BodyIndex a, BodyIndex b, Instant t, bool enteri
   for (const BodyIndex k : motions_.island(body)) {
     motions_.bring(k, t);
   }
+  std::vector<BodyIndex> group;
+  if (modes_.holds(body)) {
+    const std::array<BodyIndex, 1> seed{body};
+    group = modes_.group(seed);
+    modes_.bring_group(group, t);
+  }
   if (entering) {
     motions_.fields(body).push_back(field);
   } else {
     std::erase(motions_.fields(body), field);
   }
   motions_.note(entering ? EventKind::field_entered : EventKind::field_left, field, body, t);
+  if (!group.empty()) {
+    return settle(group, t) ? void() : set_free(group, t);
+  }
   if (motions_.support(body)) {
     resume_support(body, t);
   }

@@ -1,9 +1,12 @@
 #pragma once
 
 #include "core/schemes/event/event_accumulation.hpp"
+#include "core/schemes/event/event_modes.hpp"
 #include "core/schemes/event/event_motions.hpp"
 #include "core/schemes/event/event_predictor.hpp"
 
+#include <span>
+#include <string>
 #include <vector>
 
 namespace kairos {
@@ -13,14 +16,22 @@ inline namespace core {
 /// these launches who is concerned and predicts what they meet next.
 class EventContacts {
  public:
-  EventContacts(EventRun& run, EventMotions& motions, EventPredictor& predictor);
+  EventContacts(EventRun& run, EventMotions& motions, EventPredictor& predictor,
+                ContactGraph& graph);
 
   /// The detector told contact within `patience` (s) of t; `decided`: it proved it.
   void impact(BodyIndex a, BodyIndex b, Instant t, double patience, bool decided);
   void cross_field(BodyIndex a, BodyIndex b, Instant t, bool entering);
 
+  /// Two solids touch and would go on to do so.
+  void stay(BodyIndex a, BodyIndex b, Instant t);
   /// The bounces of a ball have died down: told once, if it is still there.
-  void begin_contact(BodyIndex i, Instant t);
+  void begin_contact(BodyIndex a, BodyIndex b, Instant t);
+  /// A group of bodies in touch goes on otherwise: a patch is at its end, or an epoch is.
+  void settle_anew(BodyIndex i, Instant t);
+  [[nodiscard]] const EventModes& modes() const { return modes_; }
+  /// What is in a hand from now on is held by nothing else.
+  void take_out(BodyIndex i, Instant t);
   /// A supported ball is so no longer; takes effect with its next launch.
   void end_contact(BodyIndex i, Instant t);
   /// A supported ball comes to the end of its surface, or that draws away.
@@ -38,6 +49,20 @@ class EventContacts {
     void persist(Archive& archive);
   };
 
+  void strike(Event& event);
+  [[nodiscard]] bool still_approaching(const Event& event, double approach, Instant t);
+  [[nodiscard]] bool settle(std::span<const BodyIndex> seeds, Instant t,
+                            const EventModes::Wish& wish = {});
+  [[nodiscard]] bool could_be_supported(BodyIndex a, BodyIndex b, Instant t) const;
+  [[nodiscard]] std::string unkept() const;
+  [[nodiscard]] bool strike_group(const BodyPair& pair, double approach, Instant t);
+  void leave_at_rest(const EventModes::GroupImpact& impact, std::vector<Twist>& v) const;
+  void tell_group(const EventModes::GroupImpact& impact, const Eigen::VectorXd& impulses,
+                  std::span<const BodyState> before, const BodyPair& first, Instant t);
+  void hand_on(const Event& first, double approach, std::vector<BodyIndex> bodies, Instant t);
+  void go_on_from(std::span<const BodyIndex> bodies, const BodyPair& first, double approach,
+                  Instant t);
+  void set_free(std::span<const BodyIndex> bodies, Instant t);
   [[nodiscard]] Contact contact_at(BodyIndex a, BodyIndex b, Instant t, double patience) const;
   void look_again(BodyIndex a, BodyIndex b, Instant t, double patience);
   void touch(BodyIndex a, BodyIndex b, const Contact& contact, Instant t);
@@ -55,6 +80,7 @@ class EventContacts {
   EventMotions& motions_;
   EventPredictor& predictor_;
   EventAccumulation accumulation_;
+  EventModes modes_;
   std::vector<Touching> bodies_;
 };
 

@@ -34,6 +34,7 @@ void EventHands::grasp(std::size_t grip, Instant t) {
   }
   motions_.note(EventKind::grasped, hand, held, t);
   grasps_.set(grip, Grasp::holding);
+  contacts_.take_out(held, t);
   carry(grip, 1.0, t);
 }
 

@@ -70,12 +70,29 @@ void EventMotions::bring_others(BodyIndex i, Instant t) {
 
 void EventMotions::launch(BodyIndex i, Instant t) {
   Flow& flow = flow_of(i);
+  flow.held = false;
   set_forces(flow);
   for (std::size_t k = 0; k < flow.states.size(); ++k) {
     flow.states[k] = now_[flow.island.bodies[k]];
   }
   flow.stepper->restart(flow.island, t, flow.states);
   next_segment(flow, t);
+}
+
+void EventMotions::hold(BodyIndex i, Instant t, const Vector3& acceleration) {
+  Flow& flow = flow_of(i);
+  flow.held = true;
+  bodies_[i].support.reset();
+  set_forces(flow);
+  flow.island.constant_force[0] = run_.model.inertia(i).mass * acceleration;
+  flow.states[0] = booked_[i] = now_[i];
+  flow.booked = t;
+  if (run_.options.roundoff) {
+    flow.launched = flow.states;
+    flow.roundoff = 0.0;
+  }
+  set_motion(i, Motion::ballistic(t, std::numeric_limits<double>::infinity(), now_[i].pose,
+                                  now_[i].twist, acceleration));
 }
 
 void EventMotions::go_on(BodyIndex i, Instant t) {
@@ -283,7 +300,7 @@ void EventMotions::book(Flow& flow, Instant t) {
   }
   const double roundoff = run_.options.roundoff ? new_roundoff(flow, t) : 0.0;
   // What the motion of a top is off its closed form is truncation: polynomials are fitted to it.
-  const bool exact = flow.exact && !run_.model.tumbles(run_.model.island_of(first));
+  const bool exact = flow.held || (flow.exact && !run_.model.tumbles(run_.model.island_of(first)));
   const Leg leg{flow.island, booked_, now_, field_forces_, exact, roundoff, riding_work(flow, t)};
   if (flow.island.forces.empty()) {
     run_.account.leg(leg);
@@ -351,7 +368,7 @@ std::int64_t EventMotions::evaluations() const {
 void EventMotions::MovingBody::persist(Archive& archive) { archive(motion, support, fields); }
 
 void EventMotions::Flow::persist(Archive& archive) {
-  archive(island.constant_force, exact, carried, states, launched, roundoff, booked);
+  archive(island.constant_force, exact, carried, held, states, launched, roundoff, booked);
   stepper->persist(archive);
 }
 

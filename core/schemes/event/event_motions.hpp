@@ -40,6 +40,9 @@ class EventMotions {
 
   /// The state of the island of i has jumped to `now`: new motions from there.
   void launch(BodyIndex i, Instant t);
+  /// The same for a body that contact forces hold, alone in its island: it moves in closed form
+  /// from `now`, at this acceleration (m/s^2), turning as it does, until it is launched again.
+  void hold(BodyIndex i, Instant t, const Vector3& acceleration);
   /// The segment of a body has ended: the next one.
   void go_on(BodyIndex i, Instant t);
   /// Body i has the hand's translation from t on, and its own orientation; what takes it from where
@@ -69,6 +72,11 @@ class EventMotions {
   [[nodiscard]] double pressing(BodyIndex ball, const Support& support, Instant t,
                                 bool held = false) const;
 
+  /// What acts on body i whatever its state, N: gravity and the fields that it is in.
+  [[nodiscard]] Vector3 steady_force(BodyIndex i) const {
+    return run_.model.gravity_force(i) + field_forces_at(i);
+  }
+
   /// The ledger follows the island of i up to t; `now` is then the state there.
   void book(BodyIndex i, Instant t) { book(flow_of(i), t); }
   void book_all(Instant t);
@@ -93,6 +101,7 @@ class EventMotions {
     std::unique_ptr<Stepper> stepper;
     bool exact = false;
     bool carried = false;             ///< a hand holds its body
+    bool held = false;                ///< contact forces hold it: no stepper moves it
     std::vector<BodyState> states{};  ///< at the end of the segment
     std::vector<Motion> motions{};
     std::unique_ptr<SupportForce> support{};  ///< while it slides under state-dependent forces

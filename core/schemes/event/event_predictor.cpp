@@ -12,8 +12,8 @@ namespace kairos {
 inline namespace core {
 
 EventPredictor::EventPredictor(EventRun& run, const EventMotions& motions, const Grasps& grasps,
-                               const Method& method)
-    : run_(run), motions_(motions), grasps_(grasps), bodies_(run.model.size()) {
+                               const ContactGraph& graph, const Method& method)
+    : run_(run), motions_(motions), grasps_(grasps), graph_(graph), bodies_(run.model.size()) {
   if (run.model.broad_phase() != "all-pairs") {
     broad_phase_ = method.broad_phase(run.model.size());
     swept_bounds_ = method.swept_bounds;
@@ -72,6 +72,22 @@ void EventPredictor::predict_all(Instant t) {
   }
 }
 
+void EventPredictor::solids_near(BodyIndex i, std::vector<BodyIndex>& out) {
+  const auto add = [&](BodyIndex j) {
+    if (run_.model.interacts(i, j) && !run_.model.is_field(i) && !run_.model.is_field(j) &&
+        !grasps_.involve(i, j)) {
+      out.push_back(j);
+    }
+  };
+  if (!broad_phase_) {
+    std::for_each(bodies_[i].partners.begin(), bodies_[i].partners.end(), add);
+    return;
+  }
+  neighbours_.clear();
+  broad_phase_->candidates(i, neighbours_);
+  std::for_each(neighbours_.begin(), neighbours_.end(), add);
+}
+
 /// Tells the broad phase where i goes during its next window.
 void EventPredictor::open_window(BodyIndex i, Instant t) {
   Instant horizon = std::min(motions_.of(i).end(), run_.epoch_end);
@@ -108,7 +124,7 @@ void EventPredictor::predict_pair(BodyIndex i, BodyIndex j, Instant t) {
   if (!leaving && grasps_.involve(a, b)) {
     return;
   }
-  if (motions_.is_supported_by(a, b) || motions_.is_supported_by(b, a)) {
+  if (motions_.is_supported_by(a, b) || motions_.is_supported_by(b, a) || graph_.joins(a, b)) {
     return;
   }
   const double duration =
@@ -214,7 +230,7 @@ void EventPredictor::predict_meeting(BodyIndex a, BodyIndex b, Instant t, double
 }
 
 /// Two solids that a computation left inside each other, by roundoff: an impact if they approach,
-/// and nothing if they part; a pair that stays would fall through, so that the run stops.
+/// and nothing if they part; a pair that stays would fall through, unless it can be held.
 void EventPredictor::leave_overlap(BodyIndex a, BodyIndex b, Instant t, double duration) {
   const BodyState state_a = motions_.at(a, t);
   const BodyState state_b = motions_.at(b, t);
@@ -228,9 +244,7 @@ void EventPredictor::leave_overlap(BodyIndex a, BodyIndex b, Instant t, double d
   const TimeOfImpact meanwhile =
       run_.detector.info().proves ? without_errors(a, b, t, parting.t_hi) : TimeOfImpact{};
   if (parting.status == ToiStatus::overlapping || meanwhile.status == ToiStatus::overlapping) {
-    return run_.stop(t, fmt::format("accumulation: {} stay in contact; what lasts is kept for a "
-                                    "ball on one face only; {}",
-                                    run_.names(a, b), part_them));
+    return run_.agenda.push(t, Due::stays, a, b);
   }
   if (meanwhile.status != ToiStatus::separated) {
     return push_meeting(a, b, t, meanwhile);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/contacts/contact_graph.hpp"
 #include "core/schemes/event/event_motions.hpp"
 #include "core/schemes/shared/grasps.hpp"
 
@@ -14,7 +15,7 @@ inline namespace core {
 class EventPredictor {
  public:
   EventPredictor(EventRun& run, const EventMotions& motions, const Grasps& grasps,
-                 const Method& method);
+                 const ContactGraph& graph, const Method& method);
 
   /// All pairs, from t on.
   void predict_all(Instant t);
@@ -23,6 +24,9 @@ class EventPredictor {
   /// All pairs of i but that with `except`.
   void predict(BodyIndex i, Instant t, BodyIndex except);
   void predict_pair(BodyIndex i, BodyIndex j, Instant t);
+
+  /// Solids that body i could touch now, appended.
+  void solids_near(BodyIndex i, std::vector<BodyIndex>& out);
 
   /// Beyond this gap two bodies do not touch, m: twice what a detector may leave between them (its
   /// tolerance, the roundoff of the coordinates that their motions reach, their error radii). No
@@ -55,6 +59,7 @@ class EventPredictor {
   EventRun& run_;
   const EventMotions& motions_;
   const Grasps& grasps_;
+  const ContactGraph& graph_;
   std::unique_ptr<BroadPhase> broad_phase_;  ///< null: every partner is a neighbour
   SweptBounds swept_bounds_;
   std::vector<Watched> bodies_;

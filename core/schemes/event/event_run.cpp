@@ -41,8 +41,7 @@ void EventRun::spend(const DueEvent& event) {
     case WorkBudget::Spent::instant:
       return stop(event.time,
                   fmt::format("accumulation: {} events at one instant, and time does not go on: of "
-                              "{}; they stay in touch, and what lasts is kept for a ball on one "
-                              "face only; {}",
+                              "{}; they stay in touch; {}",
                               budget.most_at_once(), who(*this), part_them));
     case WorkBudget::Spent::frame:
       return stop(event.time,

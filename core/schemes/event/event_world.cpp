@@ -11,9 +11,10 @@ EventWorld::EventWorld(const Model& model, const Method& method, const SchemeOpt
                        Recorder& recorder)
     : run_(model, method, options, recorder),
       grasps_(model),
+      graph_(model.size()),
       motions_(run_, method),
-      predictor_(run_, motions_, grasps_, method),
-      contacts_(run_, motions_, predictor_),
+      predictor_(run_, motions_, grasps_, graph_, method),
+      contacts_(run_, motions_, predictor_, graph_),
       hands_(run_, motions_, predictor_, contacts_, grasps_),
       clock_(run_.options),
       drawn_(model.initial_state()) {}
@@ -39,7 +40,7 @@ void EventWorld::take() {
     return next_epoch(event.time);
   }
   if (event.due == Due::contact_begins) {
-    return contacts_.begin_contact(event.a, event.time);
+    return contacts_.begin_contact(event.a, event.b, event.time);
   }
   if (event.stale) {
     return;
@@ -54,6 +55,10 @@ void EventWorld::take() {
       return end_segment(event.a, event.time);
     case Due::support_ends:
       return contacts_.leave_support(event.a, event.time);
+    case Due::mode_ends:
+      return contacts_.settle_anew(event.a, event.time);
+    case Due::stays:
+      return contacts_.stay(event.a, event.b, event.time);
     case Due::epoch_end:
     case Due::contact_begins:
       return;
@@ -89,6 +94,11 @@ void EventWorld::next_epoch(Instant t) {
       motions_.book(i, t);
       motions_.bring(i, t);
       motions_.launch(i, t);
+    }
+  }
+  for (const BodyIndex i : contacts_.modes().moving()) {
+    if (motions_.of(i).start < t) {  // its group has not been looked at
+      contacts_.settle_anew(i, t);
     }
   }
   predictor_.predict_all(t);
@@ -138,7 +148,7 @@ RunResult EventWorld::result() && {
 /// What a run needs to go on, between a frame that was drawn and the next.
 void EventWorld::persist(Archive& archive) {
   archive(run_.time, run_.epoch_end, clock_, drawn_, grasps_, run_.agenda, run_.budget, run_.ledger,
-          run_.cost, motions_, predictor_, contacts_);
+          run_.cost, graph_, motions_, predictor_, contacts_);
   run_.recorder.persist(archive);
 }
 

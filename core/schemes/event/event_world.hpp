@@ -42,6 +42,7 @@ class EventWorld {
 
   EventRun run_;
   Grasps grasps_;
+  ContactGraph graph_;
   EventMotions motions_;
   EventPredictor predictor_;
   EventContacts contacts_;

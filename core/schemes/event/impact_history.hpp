@@ -33,6 +33,8 @@ class ImpactHistory {
   /// True where more than 200 in a row followed each other on no way at all. A cradle or the break
   /// of a rack has a few.
   [[nodiscard]] bool creeps() const { return creeping_ > most_creeping; }
+  /// Whether the latest impact followed the one before on no way at all.
+  [[nodiscard]] bool on_no_way() const { return creeping_ > 0; }
   /// True where one and the same body was met more than three times in a row without a hop worth
   /// the name: what presses the two together makes each hop that follows shorter.
   [[nodiscard]] bool rests() const { return resting_ > most_resting; }

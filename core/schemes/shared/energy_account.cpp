@@ -217,6 +217,12 @@ void EnergyAccount::struck(BodyIndex i, const BodyState& before, const BodyState
   ledger_.exchange(renewed(inertia, before, after));
 }
 
+double EnergyAccount::gained(BodyIndex i, const BodyState& from, const BodyState& to) const {
+  const BodyInertia& inertia = model_.inertia(i);
+  const double linear = kinetic_gain(inertia.mass, from.twist.linear, to.twist.linear);
+  return linear + (inertia.rotates ? spin_gains(inertia, from, to).sum() : 0.0);
+}
+
 void EnergyAccount::open(Instant t, std::span<const BodyState> bodies) {
   ledger_.open(kinetic(bodies), potential(t, bodies));
   ledger_.exchange(ledger_.kinetic());

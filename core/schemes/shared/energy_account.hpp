@@ -66,6 +66,9 @@ class EnergyAccount {
   /// or handed on is no gain or loss, but it is a flow.
   void struck(BodyIndex i, const BodyState& before, const BodyState& after);
 
+  /// Kinetic energy that body i gained from one velocity to another at the same place, J.
+  [[nodiscard]] double gained(BodyIndex i, const BodyState& from, const BodyState& to) const;
+
   /// A body was moved without time passing: work against gravity.
   void moved(BodyIndex i, const Vector3& displacement) {
     ledger_.add(EnergyLine::position_correction, -model_.gravity_force(i).dot(displacement));

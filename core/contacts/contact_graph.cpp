@@ -1,0 +1,68 @@
+#include "core/contacts/contact_graph.hpp"
+
+#include "core/archive.hpp"
+
+#include <algorithm>
+
+namespace kairos {
+inline namespace core {
+
+Patch* ContactGraph::find(BodyIndex i, BodyIndex j) {
+  auto found = patches_.find({i, j});
+  if (found == patches_.end()) {
+    found = patches_.find({j, i});
+  }
+  return found == patches_.end() ? nullptr : &found->second;
+}
+
+Patch& ContactGraph::join(BodyIndex a, BodyIndex b) {
+  const auto [place, is_new] = patches_.try_emplace({a, b});
+  if (is_new) {
+    place->second.a = a;
+    place->second.b = b;
+    touch(a, b);
+  }
+  return place->second;
+}
+
+void ContactGraph::touch(BodyIndex a, BodyIndex b) {
+  partners_[a].push_back(b);
+  partners_[b].push_back(a);
+}
+
+void ContactGraph::part(BodyIndex i, BodyIndex j) {
+  if (patches_.erase({i, j}) + patches_.erase({j, i}) > 0) {
+    std::erase(partners_[i], j);
+    std::erase(partners_[j], i);
+  }
+}
+
+void Patch::persist(Archive& archive) {
+  archive(a, b, manifold.normal, manifold.size, manifold.face_of_a, manifold.face_of_b, begins,
+          told);
+  archive.require(manifold.size <= ContactManifold::most_points);
+  for (ContactManifold::Point& point : manifold.points) {
+    archive(point.position, point.gap);
+  }
+}
+
+void ContactGraph::persist(Archive& archive) {
+  std::size_t n = patches_.size();
+  archive.count(n);
+  if (!archive.reading()) {
+    for (auto& [pair, patch] : patches_) {
+      archive(patch);
+    }
+    return;
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    Patch patch;
+    archive(patch);
+    archive.require(patch.a < partners_.size() && patch.b < partners_.size() &&
+                    patch.a != patch.b && !joins(patch.a, patch.b));
+    join(patch.a, patch.b) = patch;
+  }
+}
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "core/contact_manifold.hpp"
+#include "core/instant.hpp"
+#include "core/state.hpp"
+
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+
+class Archive;
+
+/// Two bodies that stay in touch, an edge of the contact graph.
+struct Patch {
+  BodyIndex a = 0;
+  BodyIndex b = 0;
+  ContactManifold manifold;           ///< when it was last looked at
+  Instant begins = Instant::never();  ///< when its bounces have died down
+  bool told = false;                  ///< that contact has begun
+
+  void persist(Archive& archive);
+};
+
+/// Who stays in touch with whom. The pairs in it are held by contact forces, and no detector is
+/// asked about them. A pair goes as (a, b) with a before b in the order of names.
+class ContactGraph {
+ public:
+  explicit ContactGraph(std::size_t bodies) : partners_(bodies) {}
+
+  [[nodiscard]] bool holds(BodyIndex i) const { return !partners_[i].empty(); }
+  [[nodiscard]] bool empty() const { return patches_.empty(); }
+  /// nullptr where the two (in any order) are not held together.
+  [[nodiscard]] Patch* find(BodyIndex i, BodyIndex j);
+  [[nodiscard]] bool joins(BodyIndex i, BodyIndex j) const {
+    return patches_.contains({i, j}) || patches_.contains({j, i});
+  }
+  [[nodiscard]] const std::vector<BodyIndex>& partners(BodyIndex i) const { return partners_[i]; }
+
+  Patch& join(BodyIndex a, BodyIndex b);
+  void part(BodyIndex i, BodyIndex j);
+
+  void persist(Archive& archive);
+
+ private:
+  void touch(BodyIndex a, BodyIndex b);
+
+  std::map<std::pair<BodyIndex, BodyIndex>, Patch> patches_;
+  std::vector<std::vector<BodyIndex>> partners_;
+};
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,90 @@
+#include "core/contacts/contact_system.hpp"
+
+#include <Eigen/QR>
+
+namespace kairos {
+inline namespace core {
+
+GroupBody group_body(const BodyInertia& inertia, const Pose& pose) {
+  GroupBody body;
+  body.position = pose.position;
+  if (!(inertia.mass > 0.0)) {
+    return body;
+  }
+  body.inverse_mass = 1.0 / inertia.mass;
+  if (inertia.rotates) {
+    const Matrix3 R = pose.orientation.toRotationMatrix();
+    body.inverse_inertia = R * inertia.principal.cwiseInverse().asDiagonal() * R.transpose();
+  }
+  return body;
+}
+
+void ContactSystem::add(std::size_t a, std::size_t b, const Vector3& point,
+                        const Vector3& direction) {
+  rows.push_back({a, b, direction, point - bodies[a].position, point - bodies[b].position});
+}
+
+Eigen::MatrixXd ContactSystem::coupling() const {
+  const auto n = static_cast<Eigen::Index>(rows.size());
+  Eigen::MatrixXd W = Eigen::MatrixXd::Zero(n, n);
+  const auto felt = [this](std::size_t body, const Vector3& arm_i, const Vector3& d_i,
+                           const Vector3& arm_k, const Vector3& d_k) {
+    const GroupBody& g = bodies[body];
+    return g.inverse_mass * d_i.dot(d_k) +
+           arm_i.cross(d_i).dot(g.inverse_inertia * arm_k.cross(d_k));
+  };
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const ContactRow& r = rows[static_cast<std::size_t>(i)];
+    for (Eigen::Index k = i; k < n; ++k) {
+      const ContactRow& s = rows[static_cast<std::size_t>(k)];
+      double sum = 0.0;
+      if (r.a == s.a) sum += felt(r.a, r.arm_a, r.direction, s.arm_a, s.direction);
+      if (r.b == s.b) sum += felt(r.b, r.arm_b, r.direction, s.arm_b, s.direction);
+      if (r.a == s.b) sum -= felt(r.a, r.arm_a, r.direction, s.arm_b, s.direction);
+      if (r.b == s.a) sum -= felt(r.b, r.arm_b, r.direction, s.arm_a, s.direction);
+      W(i, k) = W(k, i) = sum;
+    }
+  }
+  return W;
+}
+
+double ContactSystem::rate(const ContactRow& row, const std::vector<Twist>& v) const {
+  const Twist& a = v[row.a];
+  const Twist& b = v[row.b];
+  return row.direction.dot((b.linear - a.linear) +
+                           (b.angular.cross(row.arm_b) - a.angular.cross(row.arm_a)));
+}
+
+Eigen::VectorXd ContactSystem::rates(const std::vector<Twist>& v) const {
+  Eigen::VectorXd out(static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    out[static_cast<Eigen::Index>(i)] = rate(rows[i], v);
+  }
+  return out;
+}
+
+void ContactSystem::push(const Eigen::VectorXd& impulses, std::vector<Twist>& v) const {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const ContactRow& row = rows[i];
+    const Vector3 p = row.direction * impulses[static_cast<Eigen::Index>(i)];
+    v[row.a].linear -= bodies[row.a].inverse_mass * p;
+    v[row.a].angular -= bodies[row.a].inverse_inertia * row.arm_a.cross(p);
+    v[row.b].linear += bodies[row.b].inverse_mass * p;
+    v[row.b].angular += bodies[row.b].inverse_inertia * row.arm_b.cross(p);
+  }
+}
+
+void ContactSystem::project(std::vector<Twist>& v) const {
+  if (rows.empty()) {
+    return;
+  }
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
+  decomposition.setThreshold(1e-12);  // rows that the others imply
+  decomposition.compute(coupling());
+  for (int k = 0; k < 2; ++k) {
+    push(-decomposition.solve(rates(v)), v);
+  }
+}
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "core/force.hpp"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+
+/// A body of a contact group as forces see it, at one instant.
+struct GroupBody {
+  double inverse_mass = 0.0;                  ///< 1/kg; 0: nothing moves it
+  Matrix3 inverse_inertia = Matrix3::Zero();  ///< world frame, 1/(kg m^2); 0: nothing turns it
+  Vector3 position = Vector3::Zero();         ///< of its origin, m
+};
+
+/// As the model knows it, at this pose; what is not free has inverses of 0.
+[[nodiscard]] GroupBody group_body(const BodyInertia& inertia, const Pose& pose);
+
+/// Where two bodies of a group press on each other along one direction: on b along it, on a against
+/// it.
+struct ContactRow {
+  std::size_t a = 0;  ///< place in the group
+  std::size_t b = 0;
+  Vector3 direction = Vector3::Zero();  ///< unit, from a to b, world frame
+  Vector3 arm_a = Vector3::Zero();      ///< from the origin of a to the point, m
+  Vector3 arm_b = Vector3::Zero();
+};
+
+/// Bodies and the rows along which they press: J, M and what follows of them. Velocities,
+/// accelerations and impulses alike are `Twist`s, one per body.
+struct ContactSystem {
+  std::vector<GroupBody> bodies;
+  std::vector<ContactRow> rows;
+
+  void add(std::size_t a, std::size_t b, const Vector3& point, const Vector3& direction);
+  /// J M^-1 J^T: what a unit impulse of a row does to the rates of all, 1/kg.
+  [[nodiscard]] Eigen::MatrixXd coupling() const;
+  /// J v, m/s.
+  [[nodiscard]] double rate(const ContactRow& row, const std::vector<Twist>& v) const;
+  [[nodiscard]] Eigen::VectorXd rates(const std::vector<Twist>& v) const;
+  /// v += M^-1 J^T impulse.
+  void push(const Eigen::VectorXd& impulses, std::vector<Twist>& v) const;
+  /// The nearest v for which J v = 0, nearest as the kinetic energy measures it; twice, so that
+  /// what is left is roundoff of what is left.
+  void project(std::vector<Twist>& v) const;
+};
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "core/contact_manifold.hpp"
+#include "core/contacts/contact_system.hpp"
+
+#include <string>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+
+/// Two bodies of a group that touch.
+struct GroupPatch {
+  std::size_t a = 0;  ///< places in the group
+  std::size_t b = 0;
+  ContactManifold manifold;
+  double rest_speed =
+      0.0;  ///< m/s; slower than this along the normal, they are at rest to each other
+};
+
+/// Bodies in touch at one instant, with what would move them if they were not.
+struct ContactGroup {
+  std::vector<GroupBody> bodies;
+  std::vector<Twist> velocities;
+  std::vector<Twist> loads;    ///< accelerations without contact forces
+  std::vector<double> radius;  ///< how far a body reaches from its origin, m
+  std::vector<GroupPatch> patches;
+};
+
+/// How a group goes on whose contact forces and loads stay what they are: bodies move on parabolas
+/// and do not turn, or one turns steadily about the normal of the only patch that it has.
+struct FlatMode {
+  std::string refusal;            ///< why it does not go on like that; empty: it does
+  std::vector<Twist> velocities;  ///< with nothing left along the normals that are kept
+  std::vector<Twist> accelerations;
+  std::vector<char> kept;        ///< by patch: stays in touch
+  std::vector<double> pressing;  ///< by patch: normal force, N
+  std::vector<double> rate;      ///< by patch: fastest point along the normal before, m/s, >= 0
+  int solves = 0;
+};
+
+struct FlatModeOptions {
+  bool unloaded = false;  ///< a group in which nothing presses is kept as well
+  bool unite = false;     ///< what is at rest to each other stays so, pressed or not: the end of a
+                          ///< collapse
+};
+
+/// Proposes who presses and who parts (complementarity of accelerations, without friction), and
+/// verifies it: signs, that nothing turns that must not, that normals stay. Velocities along the
+/// normals that are kept are projected out, nearest as the kinetic energy measures.
+[[nodiscard]] FlatMode flat_mode(const ContactGroup& group, const FlatModeOptions& options);
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,481 @@
+#include "core/schemes/event/event_modes.hpp"
+
+#include "core/schemes/event/mode_guards.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Guards that act within this part of an epoch act at once.
+constexpr double at_once = 1e-12;
+
+double finite_radius(const Shape& shape) {
+  const double radius = bounding_radius(shape);
+  return std::isfinite(radius) ? radius : 0.0;
+}
+
+}  // namespace
+
+/// All that touches, at an instant, as bodies of the model and as a group.
+struct EventModes::Gathered {
+  std::vector<BodyIndex> bodies;  ///< by place in the group
+  std::vector<BodyState> states;
+  std::vector<std::pair<BodyIndex, BodyIndex>> pairs;  ///< by patch
+  ContactGroup group;
+  std::string refusal;
+
+  [[nodiscard]] std::size_t place(BodyIndex i) const {
+    return static_cast<std::size_t>(std::find(bodies.begin(), bodies.end(), i) - bodies.begin());
+  }
+  [[nodiscard]] bool has(BodyIndex i) const { return place(i) < bodies.size(); }
+  [[nodiscard]] bool presses(const BodyPair& pair, const FlatMode& mode) const {
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+      if (pairs[p] == pair || pairs[p] == BodyPair{pair.second, pair.first}) {
+        return mode.kept[p] != 0 && mode.pressing[p] > 0.0;
+      }
+    }
+    return false;
+  }
+};
+
+EventModes::EventModes(EventRun& run, EventMotions& motions, EventPredictor& predictor,
+                       const EventAccumulation& accumulation, ContactGraph& graph)
+    : run_(run),
+      motions_(motions),
+      predictor_(predictor),
+      accumulation_(accumulation),
+      graph_(graph) {}
+
+// --- Who touches whom --------------------------------------------------------------------------
+
+/// Acceleration without contact forces.
+Twist EventModes::load(BodyIndex i, const BodyState& state) const {
+  if (!run_.model.is_free(i)) {
+    return {};
+  }
+  const BodyInertia& inertia = run_.model.inertia(i);
+  Twist load{motions_.steady_force(i) / inertia.mass, Vector3::Zero()};
+  if (inertia.rotates) {
+    load.angular = angular_acceleration(inertia, state, Vector3::Zero());
+  }
+  return load;
+}
+
+/// So slow along the normal that what presses allows no hop worth the name.
+double EventModes::rest_speed(BodyIndex a, BodyIndex b, const BodyState& at_a,
+                              const BodyState& at_b, const Wish& wish) const {
+  const double tolerance = accumulation_.rest_tolerance(a, b, run_.model.restitution(a, b));
+  const double pressing = load(a, at_a).linear.norm() + load(b, at_b).linear.norm();
+  const double speeds = at_a.twist.linear.norm() + at_b.twist.linear.norm();
+  double slow = std::sqrt(2.0 * pressing * tolerance) + 16.0 * epsilon * speeds;
+  if (wish.unite && wish.remaining > 0.0) {
+    slow = std::max(slow, tolerance / wish.remaining);
+  }
+  return slow;
+}
+
+EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instant t,
+                                        const Wish& wish) {
+  Gathered found;
+  const auto is_seed = [&](BodyIndex i) {
+    return std::find(seeds.begin(), seeds.end(), i) != seeds.end();
+  };
+  const auto state_of = [&](BodyIndex i) {
+    const bool known = is_seed(i) || run_.model.mobility(i) == Mobility::fixed;
+    return known ? motions_.now(i) : motions_.at(i, t);
+  };
+  const auto add = [&](BodyIndex i) {
+    const BodyState state = state_of(i);
+    found.bodies.push_back(i);
+    found.states.push_back(state);
+    found.group.bodies.push_back(group_body(run_.model.inertia(i), state.pose));
+    found.group.velocities.push_back(state.twist);
+    found.group.loads.push_back(load(i, state));
+    found.group.radius.push_back(finite_radius(run_.model.shape(i)));
+    if (run_.model.is_free(i)) {
+      const Island& island = run_.model.islands()[run_.model.island_of(i)];
+      if (island.bodies.size() > 1 || (!island.forces.empty() && !wish.impact)) {
+        found.refusal = "'" + run_.model.body(i).name + "' feels forces that are not constant";
+      }
+    } else if (run_.model.mobility(i) == Mobility::driven && !wish.impact) {
+      found.refusal = "'" + run_.model.body(i).name + "' is driven";
+    }
+  };
+  std::vector<BodyIndex> sorted(seeds.begin(), seeds.end());
+  std::sort(sorted.begin(), sorted.end(),
+            [&](BodyIndex i, BodyIndex j) { return run_.agenda.before(i, j); });
+  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  for (const BodyIndex i : sorted) {
+    add(i);
+  }
+  std::vector<BodyIndex> near;
+  for (std::size_t k = 0; k < found.bodies.size() && found.refusal.empty(); ++k) {
+    const BodyIndex i = found.bodies[k];
+    if (!run_.model.is_free(i)) {
+      continue;
+    }
+    near.clear();
+    predictor_.solids_near(i, near);
+    const std::vector<BodyIndex>& held = graph_.partners(i);
+    near.insert(near.end(), held.begin(), held.end());
+    std::sort(near.begin(), near.end(),
+              [&](BodyIndex x, BodyIndex y) { return run_.agenda.before(x, y); });
+    near.erase(std::unique(near.begin(), near.end()), near.end());
+    for (const BodyIndex j : near) {
+      const auto [a, b] = run_.agenda.before(i, j) ? std::pair{i, j} : std::pair{j, i};
+      if (std::find(found.pairs.begin(), found.pairs.end(), std::pair{a, b}) != found.pairs.end()) {
+        continue;
+      }
+      const BodyState at_a = state_of(a);
+      const BodyState at_b = state_of(b);
+      const double radii =
+          bounding_radius(run_.model.shape(a)) + bounding_radius(run_.model.shape(b));
+      const double reach = predictor_.touching_gap(a, b);
+      const bool joined = graph_.joins(a, b);
+      if (joined && !found.has(j)) {
+        add(j);  // whatever becomes of the pair, it must be told
+      }
+      if ((at_a.pose.position - at_b.pose.position).norm() > radii + reach) {
+        continue;
+      }
+      const ContactManifold manifold = run_.detector.manifold(
+          run_.model.shape(a), at_a.pose, run_.model.shape(b), at_b.pose, reach);
+      if (manifold.size == 0) {
+        continue;
+      }
+      const double slow = rest_speed(a, b, at_a, at_b, wish);
+      double least = infinity;
+      double most = -infinity;
+      for (std::size_t p = 0; p < manifold.size; ++p) {
+        const double rate =
+            normal_velocity({manifold.points[p].position, manifold.normal, 0.0}, at_a, at_b);
+        least = std::min(least, rate);
+        most = std::max(most, rate);
+      }
+      const bool struck = wish.impact && is_seed(a) && is_seed(b);
+      if (wish.impact ? least > slow || (wish.held_only && !joined && !struck)
+                      : least < -slow || most > slow) {
+        continue;  // an impact of its own, or parting
+      }
+      if (!found.has(j)) {
+        add(j);
+      }
+      found.pairs.emplace_back(a, b);
+      found.group.patches.push_back({found.place(a), found.place(b), manifold, slow});
+    }
+  }
+  return found;
+}
+
+std::vector<BodyIndex> EventModes::group(std::span<const BodyIndex> seeds) const {
+  std::vector<BodyIndex> bodies;
+  const auto add = [&](BodyIndex i) {
+    if (run_.model.is_free(i) && std::find(bodies.begin(), bodies.end(), i) == bodies.end()) {
+      bodies.push_back(i);
+    }
+  };
+  for (const BodyIndex i : seeds) {
+    add(i);
+  }
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    for (const BodyIndex j : graph_.partners(bodies[k])) {
+      add(j);
+    }
+  }
+  std::sort(bodies.begin(), bodies.end(),
+            [&](BodyIndex i, BodyIndex j) { return run_.agenda.before(i, j); });
+  return bodies;
+}
+
+void EventModes::bring_group(std::span<const BodyIndex> bodies, Instant t) {
+  for (const BodyIndex i : bodies) {
+    motions_.book(i, t);
+    motions_.bring(i, t);
+  }
+}
+
+// --- Settling ----------------------------------------------------------------------------------
+
+bool EventModes::settle(std::span<const BodyIndex> seeds, Instant t, const Adopt& adopt,
+                        const Wish& wish) {
+  Gathered found = gather(seeds, t, wish);
+  why_not_ = found.refusal;
+  if (why_not_.empty() && found.pairs.size() < wish.pairs) {
+    why_not_ = "some are still on their way";
+  }
+  while (why_not_.empty()) {
+    const FlatMode mode = flat_mode(found.group, {wish.unloaded, wish.unite});
+    why_not_ = mode.refusal;
+    if (why_not_.empty() && wish.pressed && !found.presses(*wish.pressed, mode)) {
+      why_not_ = "nothing presses";
+    }
+    if (!why_not_.empty()) {
+      return false;
+    }
+    std::vector<double> until;
+    why_not_ = guard_times(run_.model, found.bodies, found.states, found.group, mode,
+                           run_.epoch_end - t, until);
+    if (!why_not_.empty()) {
+      return false;
+    }
+    // A ball that is beyond the rim already is carried by nothing.
+    const auto over = std::find_if(until.begin(), until.end(),
+                                   [&](double s) { return s <= at_once * run_.epoch; });
+    if (over != until.end()) {
+      const auto p = over - until.begin();
+      if (found.group.patches[static_cast<std::size_t>(p)].manifold.size > 1) {
+        why_not_ = "a body tips over the rim of what carries it";
+        return false;
+      }
+      found.group.patches.erase(found.group.patches.begin() + p);
+      found.pairs.erase(found.pairs.begin() + p);
+      continue;
+    }
+    commit(found, mode, t, adopt);
+    for (std::size_t p = 0; p < until.size(); ++p) {
+      if (std::isfinite(until[p]) && t + until[p] < run_.epoch_end) {
+        run_.agenda.push(t + until[p], Due::mode_ends, found.pairs[p].first, found.pairs[p].second);
+      }
+    }
+    return true;
+  }
+  return false;
+}
+
+void EventModes::commit(const Gathered& found, const FlatMode& mode, Instant t,
+                        const Adopt& adopt) {
+  std::vector<std::pair<BodyIndex, Instant>> adopted;
+  std::vector<std::pair<BodyIndex, BodyIndex>> supports;
+  double dissipated = 0.0;
+  for (std::size_t k = 0; k < found.bodies.size(); ++k) {
+    const BodyIndex i = found.bodies[k];
+    if (!run_.model.is_free(i)) {
+      continue;
+    }
+    motions_.book(i, t);
+    if (const auto& support = motions_.support(i)) {
+      const BodyIndex surface = support->surface;
+      const auto pair =
+          run_.agenda.before(i, surface) ? std::pair{i, surface} : std::pair{surface, i};
+      Patch& patch = graph_.join(pair.first, pair.second);
+      patch.begins = adopt(i);
+      patch.told = patch.begins <= t;
+      motions_.set_support(i, std::nullopt);
+    }
+    BodyState& now = motions_.now(i);
+    now.pose = found.states[k].pose;
+    BodyState before = now;
+    before.twist = found.states[k].twist;
+    now.twist = mode.velocities[k];
+    dissipated += run_.account.gained(i, before, now);
+    run_.account.struck(i, before, now);
+  }
+  if (dissipated != 0.0) {
+    run_.ledger.add(EnergyLine::zeno_completion, dissipated);
+  }
+  const std::vector<Change> changes = join_and_part(found, mode, t);
+  for (std::size_t k = 0; k < found.bodies.size(); ++k) {
+    const BodyIndex i = found.bodies[k];
+    if (run_.model.is_free(i)) {
+      if (graph_.holds(i)) {
+        motions_.hold(i, t, mode.accelerations[k].linear);
+      } else {
+        motions_.launch(i, t);
+      }
+    }
+  }
+  tell(changes, t);
+  for (const BodyIndex i : found.bodies) {
+    if (run_.model.is_free(i)) {
+      predictor_.predict(i, t);
+    }
+  }
+}
+
+void EventModes::tell(std::span<const Change> changes, Instant t) {
+  for (const Change& change : changes) {
+    motions_.note(change.kind, change.a, change.b, t);
+  }
+}
+
+/// The graph as it is from now on; contacts that end, that begin, and those that will have begun
+/// when what is left of their bounces has died down.
+std::vector<EventModes::Change> EventModes::join_and_part(const Gathered& found,
+                                                          const FlatMode& mode, Instant t) {
+  std::vector<Change> changes;
+  std::vector<std::pair<BodyIndex, BodyIndex>> ended;
+  for (const BodyIndex i : found.bodies) {
+    for (const BodyIndex j : graph_.partners(i)) {
+      const auto pair = run_.agenda.before(i, j) ? std::pair{i, j} : std::pair{j, i};
+      const auto p = static_cast<std::size_t>(
+          std::find(found.pairs.begin(), found.pairs.end(), pair) - found.pairs.begin());
+      const bool stays = p < found.pairs.size() && mode.kept[p] != 0;
+      if (run_.model.is_free(i) && !stays &&
+          std::find(ended.begin(), ended.end(), pair) == ended.end()) {
+        ended.push_back(pair);
+      }
+    }
+  }
+  for (const auto& [a, b] : ended) {
+    const Patch patch = *graph_.find(a, b);
+    graph_.part(a, b);
+    if (patch.told) {
+      changes.push_back({EventKind::contact_ends, a, b});
+    }
+  }
+  for (std::size_t p = 0; p < found.pairs.size(); ++p) {
+    if (mode.kept[p] == 0) {
+      continue;
+    }
+    const auto [a, b] = found.pairs[p];
+    const bool is_new = !graph_.joins(a, b);
+    Patch& patch = graph_.join(a, b);
+    patch.manifold = found.group.patches[p].manifold;
+    if (!is_new) {
+      continue;
+    }
+    const double e = run_.model.restitution(a, b);
+    const std::size_t pa = found.place(a);
+    const std::size_t pb = found.place(b);
+    const Vector3& n = patch.manifold.normal;
+    const double pressing =
+        -std::min(n.dot(found.group.loads[pb].linear - mode.accelerations[pa].linear),
+                  n.dot(mode.accelerations[pb].linear - found.group.loads[pa].linear));
+    const bool hops = mode.rate[p] > 0.0 && pressing > 0.0 && e < 1.0;
+    const double still = hops ? 2.0 * mode.rate[p] / (pressing * (1.0 - e)) : 0.0;
+    patch.begins = t + still;
+    if (still > 0.0 && patch.begins < Instant::never()) {
+      run_.agenda.push(patch.begins, Due::contact_begins, a, b);
+    } else {
+      patch.told = true;
+      changes.push_back({EventKind::contact_begins, a, b});
+    }
+  }
+  return changes;
+}
+
+void EventModes::begin_contact(BodyIndex a, BodyIndex b, Instant t) {
+  Patch* const patch = graph_.find(a, b);
+  if (patch != nullptr && !patch->told && patch->begins == t) {
+    run_.time = t;
+    patch->told = true;
+    motions_.note(EventKind::contact_begins, a, b, t);
+  }
+}
+
+std::vector<EventModes::Change> EventModes::part(std::span<const BodyIndex> bodies) {
+  std::vector<Change> changes;
+  for (const BodyIndex i : bodies) {
+    while (graph_.holds(i)) {
+      const BodyIndex j = graph_.partners(i).front();
+      const Patch patch = *graph_.find(i, j);
+      graph_.part(i, j);
+      if (patch.told) {
+        changes.push_back({EventKind::contact_ends, patch.a, patch.b});
+      }
+    }
+  }
+  return changes;
+}
+
+std::vector<BodyIndex> EventModes::moving() const {
+  std::vector<BodyIndex> bodies;
+  for (const BodyIndex i : run_.agenda.by_name()) {
+    if (run_.model.is_free(i) && graph_.holds(i) && motions_.of(i).position.degree() > 0) {
+      bodies.push_back(i);
+    }
+  }
+  return bodies;
+}
+
+// --- Impacts -----------------------------------------------------------------------------------
+
+EventModes::GroupImpact EventModes::impact_group(const BodyPair& pair, Instant t, bool all) {
+  const std::array<BodyIndex, 2> seeds{pair.first, pair.second};
+  Gathered found = gather(seeds, t, {.impact = true, .held_only = !all});
+  GroupImpact impact;
+  impact.refusal = std::move(found.refusal);
+  impact.bodies = std::move(found.bodies);
+  impact.pairs = std::move(found.pairs);
+  impact.system.bodies = std::move(found.group.bodies);
+  impact.velocities = std::move(found.group.velocities);
+  std::vector<double> restitution;
+  for (std::size_t p = 0; p < impact.pairs.size(); ++p) {
+    const GroupPatch& patch = found.group.patches[p];
+    for (std::size_t k = 0; k < patch.manifold.size; ++k) {
+      const ContactManifold::Point& point = patch.manifold.points[k];
+      impact.system.add(patch.a, patch.b, point.position, patch.manifold.normal);
+      if (impact.system.rate(impact.system.rows.back(), impact.velocities) > patch.rest_speed) {
+        impact.system.rows.pop_back();
+        continue;
+      }
+      impact.pair_of_row.push_back(p);
+      impact.gaps.push_back(point.gap);
+      restitution.push_back(run_.model.restitution(impact.pairs[p].first, impact.pairs[p].second));
+    }
+  }
+  impact.restitution = Eigen::Map<const Eigen::VectorXd>(
+      restitution.data(), static_cast<Eigen::Index>(restitution.size()));
+  return impact;
+}
+
+std::optional<EventModes::Approach> EventModes::approach(BodyIndex a, BodyIndex b) const {
+  const BodyState& at_a = motions_.now(a);
+  const BodyState& at_b = motions_.now(b);
+  const Shape& shape_a = run_.model.shape(a);
+  const Shape& shape_b = run_.model.shape(b);
+  const double slow = rest_speed(a, b, at_a, at_b, {});
+  const ContactManifold manifold =
+      run_.detector.manifold(shape_a, at_a.pose, shape_b, at_b.pose, predictor_.touching_gap(a, b));
+  if (manifold.size == 0) {
+    return std::nullopt;
+  }
+  const Overlap o = run_.detector.overlap(shape_a, at_a.pose, shape_b, at_b.pose);
+  Contact contact{o.point, o.normal, o.gap};
+  double rate = normal_velocity(contact, at_a, at_b);
+  if (rate >= -slow) {
+    for (std::size_t p = 0; p < manifold.size; ++p) {
+      const Contact corner{manifold.points[p].position, manifold.normal, manifold.points[p].gap};
+      const double at_corner = normal_velocity(corner, at_a, at_b);
+      if (at_corner < std::min(rate, -slow)) {
+        contact = corner;
+        rate = at_corner;
+      }
+    }
+  }
+  return rate < -slow ? std::optional(Approach{a, b, contact, -rate}) : std::nullopt;
+}
+
+std::optional<EventModes::Approach> EventModes::worst_approach(
+    std::span<const BodyIndex> bodies, std::span<const BodyPair> others) const {
+  std::vector<BodyPair> pairs(others.begin(), others.end());
+  for (const BodyIndex i : bodies) {
+    for (const BodyIndex j : graph_.partners(i)) {
+      pairs.push_back(run_.agenda.before(i, j) ? BodyPair{i, j} : BodyPair{j, i});
+    }
+  }
+  const auto by_name = [&](const BodyPair& x, const BodyPair& y) {
+    return x.first != y.first ? run_.agenda.before(x.first, y.first)
+                              : run_.agenda.before(x.second, y.second);
+  };
+  std::sort(pairs.begin(), pairs.end(), by_name);
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  std::optional<Approach> worst;
+  for (const auto& [a, b] : pairs) {
+    const std::optional<Approach> found = approach(a, b);
+    if (found && (!worst || found->speed > worst->speed)) {
+      worst = found;
+    }
+  }
+  return worst;
+}
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,112 @@
+#pragma once
+
+#include "core/contacts/contact_graph.hpp"
+#include "core/contacts/flat_modes.hpp"
+#include "core/schemes/event/event_accumulation.hpp"
+#include "core/schemes/event/event_motions.hpp"
+#include "core/schemes/event/event_predictor.hpp"
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+
+/// Contact that lasts among several bodies: who holds whom, since when, and until what happens.
+///
+/// A group of bodies in touch is *settled*: `flat_mode` says who presses, and that nothing turns
+/// that must not; the pairs that stay join the contact graph, where no detector is asked about
+/// them, and their bodies move in closed form. What ends this (an impact, a field, a body that
+/// comes to the rim of what carries it) settles the group anew.
+class EventModes {
+ public:
+  EventModes(EventRun& run, EventMotions& motions, EventPredictor& predictor,
+             const EventAccumulation& accumulation, ContactGraph& graph);
+
+  /// When the bounces of a ball on the face that supports it have died down; it is supported by
+  /// nothing but the group from then on.
+  using Adopt = std::function<Instant(BodyIndex ball)>;
+  struct Wish {
+    bool unloaded = false;   ///< keep what touches without pressing, too
+    bool unite = false;      ///< an accumulation ends here: what is slow stays together
+    double remaining = 0.0;  ///< unite: how long it would still have taken, s
+    std::size_t pairs = 0;   ///< unite: how many pairs must be in touch at least
+    std::optional<BodyPair> pressed = {};  ///< only if what holds these two is pressed
+    bool impact = false;                   ///< what approaches is of interest, too
+    bool held_only = false;                ///< impact: only what is held, and these two
+  };
+  /// Settles all that touches the seeds at t, whose states are at `now`; false, and nothing has
+  /// changed, where they cannot go on in touch. `why_not` then says why.
+  [[nodiscard]] bool settle(std::span<const BodyIndex> seeds, Instant t, const Adopt& adopt,
+                            const Wish& wish);
+  [[nodiscard]] const std::string& why_not() const { return why_not_; }
+
+  /// Whether contact forces hold this free body.
+  [[nodiscard]] bool holds(BodyIndex i) const { return run_.model.is_free(i) && graph_.holds(i); }
+  /// Free bodies that are held together with one of these, they included, by name.
+  [[nodiscard]] std::vector<BodyIndex> group(std::span<const BodyIndex> seeds) const;
+  /// Books and brings the groups of both: before something changes them.
+  void bring_group(std::span<const BodyIndex> bodies, Instant t);
+  /// The patch that approaches fastest among those of the bodies at `now` and the others, with the
+  /// point at which it does: the centroid, or where that does not approach a point of it; nothing
+  /// where all are slower than they may be at rest.
+  struct Approach {
+    BodyIndex a = 0;
+    BodyIndex b = 0;
+    Contact contact;
+    double speed = 0.0;
+  };
+  [[nodiscard]] std::optional<Approach> worst_approach(std::span<const BodyIndex> bodies,
+                                                       std::span<const BodyPair> others) const;
+  /// A contact that begins or ends, to be told when its bodies have their new motions.
+  struct Change {
+    EventKind kind = EventKind::contact_ends;
+    BodyIndex a = 0;
+    BodyIndex b = 0;
+  };
+  /// An impact of several bodies in touch, as an impact law sees it.
+  struct GroupImpact {
+    std::vector<BodyIndex> bodies;  ///< by place in the system; free ones and what they touch
+    std::vector<BodyPair> pairs;
+    ContactSystem system;
+    std::vector<std::size_t> pair_of_row;
+    Eigen::VectorXd restitution;  ///< by row
+    std::vector<Twist> velocities;
+    std::vector<double> gaps;  ///< by row, m
+    std::string refusal;       ///< why it is none
+  };
+  /// What the pair, whose states are at `now`, is in touch with: all of it, or what is held.
+  [[nodiscard]] GroupImpact impact_group(const BodyPair& pair, Instant t, bool all);
+
+  /// The bodies are held no longer; takes effect with their next launch.
+  [[nodiscard]] std::vector<Change> part(std::span<const BodyIndex> bodies);
+  void tell(std::span<const Change> changes, Instant t);
+  /// The bounces of a pair have died down.
+  void begin_contact(BodyIndex a, BodyIndex b, Instant t);
+  /// Groups that move are looked at for one epoch only.
+  [[nodiscard]] std::vector<BodyIndex> moving() const;
+
+ private:
+  struct Gathered;
+  [[nodiscard]] Gathered gather(std::span<const BodyIndex> seeds, Instant t, const Wish& wish);
+  [[nodiscard]] double rest_speed(BodyIndex a, BodyIndex b, const BodyState& at_a,
+                                  const BodyState& at_b, const Wish& wish) const;
+  [[nodiscard]] std::optional<Approach> approach(BodyIndex a, BodyIndex b) const;
+  [[nodiscard]] Twist load(BodyIndex i, const BodyState& state) const;
+  void commit(const Gathered& group, const FlatMode& mode, Instant t, const Adopt& adopt);
+  [[nodiscard]] std::vector<Change> join_and_part(const Gathered& found, const FlatMode& mode,
+                                                  Instant t);
+
+  EventRun& run_;
+  EventMotions& motions_;
+  EventPredictor& predictor_;
+  const EventAccumulation& accumulation_;
+  ContactGraph& graph_;
+  std::string why_not_;
+};
+
+}  // namespace core
+}  // namespace kairos
