@@ -183,6 +183,17 @@ TEST_CASE("stepping: a ball rebounds with e times its velocity, and the loss is 
   }
 }
 
+TEST_CASE("stepping: what comes near slowly and then touches has one impact", "[stepping]") {
+  const Scene scene = scene_of("G = 0",
+                               "radius = 0.5\nposition = [0, 0.52, 0]\n"
+                               "velocity = [0, -0.1, 0]\nrestitution = 0\n");
+  for (const std::string& scheme : stepping) {
+    CAPTURE(scheme);
+    // pgs sees it from 5 mm on, three steps before it touches.
+    CHECK(run(scene, with(scheme, 1.0 / 60.0, 0.5)).result.cost.impacts == 1);
+  }
+}
+
 TEST_CASE("stepping: stacks sink as far as their scheme lets them", "[stepping]") {
   const auto sunk = [](const std::string& scheme) {
     std::vector<double> depths;

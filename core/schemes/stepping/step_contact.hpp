@@ -24,7 +24,7 @@ struct StepContact {
   Vector3 point_A = Vector3::Zero();     ///< in the frame of a: by this it is known again
   double fastest_approach = 0.0;         ///< since it began, m/s
   bool taken = false;                    ///< a contact of the next step goes on from it
-  bool begins = true;                    ///< the pair was apart in the last step
+  bool begins = true;                    ///< nothing pressed the pair apart in the last step
 
   [[nodiscard]] Vector3 normal_W() const { return frame_W.col(0); }
   /// What the next step needs to know of it.

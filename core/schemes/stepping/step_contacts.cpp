@@ -106,8 +106,10 @@ void StepWorld::recognise() {
     const bool single = last - first == 1 && old.second - old.first == 1;
     const double near = 0.1 * std::min(smallest_extent(run_.model.shape(first->a)),
                                        smallest_extent(run_.model.shape(first->b)));
+    const bool begins = std::none_of(old.first, old.second,
+                                     [](const StepContact& o) { return o.impulse[0] > 0.0; });
     for (auto c = first; c != last; ++c) {
-      c->begins = old.first == old.second;
+      c->begins = begins;
       StepContact* best = nullptr;
       double distance = near;
       for (auto o = old.first; o != old.second; ++o) {
