@@ -52,7 +52,8 @@ void print(const Assessment& assessment) {
                           : "");
   }
   fmt::print(
-      "work: right-hand sides + overlap tests + gap evaluations; front: nothing is both "
+      "work: right-hand sides + overlap tests + gap evaluations + contact solves; front: nothing "
+      "is both "
       "cheaper and nearer at the end\n");
 }
 

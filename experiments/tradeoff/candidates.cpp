@@ -64,6 +64,15 @@ void frame_based(Collector& all) {
   }
 }
 
+/// The schemes that people use, with the options of their sources.
+void time_stepping(Collector& all) {
+  for (const int parts : {1, 4}) {
+    for (const char* scheme : {"moreau-jean", "pgs", "xpbd", "penalty"}) {
+      all.add(scheme, scheme, method(scheme, "auto", "certified"), parts);
+    }
+  }
+}
+
 void event_driven(Collector& all, bool closed_form) {
   const auto add = [&](const std::string& name, const char* integrator, double step, double tol,
                        const char* detector = "certified") {
@@ -129,6 +138,7 @@ std::string Candidate::options() const {
 std::vector<Candidate> sensible_candidates(const Model& model) {
   Collector all(model);
   frame_based(all);
+  time_stepping(all);
   event_driven(all, all_closed_form(model));
   return std::move(all).take();
 }
