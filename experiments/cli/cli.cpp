@@ -68,6 +68,7 @@ void add_commands(CLI::App& app) {
   add_reproduce_command(app);
   add_render_command(app);
   add_view_command(app);
+  add_plot_command(app);
   add_record_command(app);
   add_physworld_command(app);
   add_bench_command(app);

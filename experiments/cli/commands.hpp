@@ -19,6 +19,7 @@ void add_experiment_command(CLI::App& app);
 void add_reproduce_command(CLI::App& app);
 void add_record_command(CLI::App& app);
 void add_render_command(CLI::App& app);
+void add_plot_command(CLI::App& app);
 void add_physworld_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 void add_tradeoff_command(CLI::App& app);

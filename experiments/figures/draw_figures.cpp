@@ -59,4 +59,23 @@ std::string draw_figures(const std::string& script, const std::string& folder) {
   return code == 0 ? "" : fmt::format("no figures: the script '{}' ended with code {}", name, code);
 }
 
+std::string draw_runs(const std::vector<std::string>& runs, const std::string& bodies,
+                      const std::string& picture) {
+  const std::string scripts = figure_folder();
+  const std::string python = find_python();
+  if (scripts.empty() || python.empty()) {
+    return scripts.empty()
+               ? "no picture: the folder of figure scripts is missing"
+               : "no picture: no python3 with matplotlib was found; set KAIROS_PYTHON to one";
+  }
+  std::vector<std::string> command{
+      python, "-B", (std::filesystem::path(scripts) / "run_plot.py").string(), picture};
+  if (!bodies.empty()) {
+    command.insert(command.end(), {"--bodies", bodies});
+  }
+  command.insert(command.end(), runs.begin(), runs.end());
+  const int code = run_child(command, ChildOutput::shown);
+  return code == 0 ? "" : fmt::format("no picture: run_plot.py ended with code {}", code);
+}
+
 }  // namespace kairos::experiments

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace kairos::experiments {
 
@@ -13,5 +14,11 @@ namespace kairos::experiments {
 /// `lines`, which draws any sweep. Returns what went wrong; empty if nothing did: results do not
 /// depend on their pictures.
 [[nodiscard]] std::string draw_figures(const std::string& script, const std::string& folder);
+
+/// Draws runs over time, beside each other (`run_plot`): folders that `kairos run --out` wrote, and
+/// the picture, a file .png, .svg or .pdf. `bodies`: with commas; empty: those that move. Returns
+/// what went wrong; empty if nothing did.
+[[nodiscard]] std::string draw_runs(const std::vector<std::string>& runs, const std::string& bodies,
+                                    const std::string& picture);
 
 }  // namespace kairos::experiments

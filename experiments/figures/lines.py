@@ -38,6 +38,9 @@ def draw_sweep(data, figures, sweep):
     alone = len(lines) == len(unique(line[0] for line in lines))
     looks = [style.look(name, names) if alone else style.by_place(i, name)
              for i, name in enumerate(names)]
+    for line, look in zip(lines, looks):
+        look["marker"] = data.entry(f"mark:{sweep}:{line[0]}") or look["marker"]
+    logarithmic = data.entry(f"log:{sweep}") is not None
     for panel, metric in zip(panels, metrics):
         for line, look in zip(lines, looks):
             of_line = [row for row in rows
@@ -45,6 +48,8 @@ def draw_sweep(data, figures, sweep):
             draw_line(panel, of_line, x, metric, look)
         panel.set_xscale(data.column(sweep, x)["scale"])
         panel.set_xlabel(data.label(sweep, x))
+        if logarithmic and metric not in YES_OR_NO and is_positive(rows, metric):
+            panel.set_yscale("log")
         panel.set_ylabel(("fraction of runs: " if metric in YES_OR_NO else "") +
                          data.label(sweep, metric))
     for panel in panels[len(metrics):]:
@@ -54,6 +59,11 @@ def draw_sweep(data, figures, sweep):
     figures.save(figure, sweep, (data.entry(f"caption:{sweep}") or
                  f"Against {x}: medians over the repeats; shaded: from the lower to the upper "
                  "quartile.") + (f" The same for all, and not drawn: {told}." if told else ""))
+
+
+def is_positive(rows, metric):
+    """Whether a metric has anything to show on a logarithmic scale."""
+    return any((row[f"{metric}.median"] or 0) > 0 for row in rows)
 
 
 def line_name(line, others):

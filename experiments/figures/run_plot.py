@@ -2,7 +2,7 @@
 
 usage: python3 run_plot.py OUT.png|OUT.svg|OUT.pdf [--bodies A,B] RUN [RUN...]
 
-A RUN is a folder that `kairos run --out` wrote. The Python package draws
+A RUN is a folder that `kairos run --out` wrote. `kairos plot` calls this; the Python package draws
 runs in memory by the same functions: `figure_of` takes `DrawnRun`s, from `read_run` or elsewhere.
 """
 

@@ -2,7 +2,6 @@
 
 #include "core/archive.hpp"
 #include "core/error.hpp"
-#include "experiments/output/file_part.hpp"
 #include "experiments/output/fingerprint.hpp"
 #include "experiments/run_error.hpp"
 
@@ -11,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -29,33 +29,63 @@ std::string framed(std::string_view bytes) {
   return archive.bytes() + fingerprint(bytes) + std::string(bytes);
 }
 
-/// Takes the next whole record off the text; empty where the rest is none.
-std::string_view next_record(std::string_view& text) {
-  std::size_t size = 0;
-  if (text.size() < sizeof size + checksum_size) {
-    return {};
-  }
-  std::memcpy(&size, text.data(), sizeof size);
-  const std::string_view checksum = text.substr(sizeof size, checksum_size);
-  const std::string_view rest = text.substr(sizeof size + checksum_size);
-  if (size == 0 || rest.size() < size || fingerprint(rest.substr(0, size)) != checksum) {
-    return {};
-  }
-  text = rest.substr(size);
-  return rest.substr(0, size);
-}
-
 std::string error_text() { return std::generic_category().message(errno); }
 
 }  // namespace
 
-RecordJournal::RecordJournal(std::string path, const std::string& key) : path_(std::move(path)) {
-  load(key);
+bool RecordFile::read(std::size_t place, std::string& record, std::size_t& end) const {
+  constexpr std::size_t head_size = sizeof(std::size_t) + checksum_size;
+  const std::size_t left = file_.size() - std::min(place, file_.size());
+  if (left < head_size) {
+    return false;
+  }
+  const std::string head = file_.text(place, head_size);
+  std::size_t size = 0;
+  std::memcpy(&size, head.data(), sizeof size);
+  if (size == 0 || left - head_size < size) {
+    return false;
+  }
+  record = file_.text(place + head_size, size);
+  end = place + head_size + size;
+  return std::string_view(head).substr(sizeof size) == fingerprint(record);
+}
+
+std::string RecordFile::key() const {
+  std::string key;
+  std::size_t end = 0;
+  return read(0, key, end) ? key : std::string();
+}
+
+std::size_t RecordFile::scan(const std::function<void(std::size_t, std::string_view)>& take) const {
+  std::string record;
+  std::size_t end = 0;
+  if (!read(0, record, end)) {
+    return 0;
+  }
+  for (std::size_t place = end; read(place, record, end); place = end) {
+    take(place, record);
+  }
+  return end;
+}
+
+std::string RecordFile::at(std::size_t place) const {
+  std::string record;
+  std::size_t end = 0;
+  if (!read(place, record, end)) {
+    throw InputError(path_, 0, "", fmt::format("has no whole record at byte {}", place));
+  }
+  return record;
+}
+
+RecordJournal::RecordJournal(std::string path, const std::string& key,
+                             const std::function<void(std::size_t, std::string_view)>& take)
+    : path_(std::move(path)) {
+  load(key, take);
   descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (descriptor_ < 0) {
     throw InputError(path_, 0, "", "cannot be created: " + error_text());
   }
-  if (found_.empty()) {
+  if (end_ == 0) {
     if (::ftruncate(descriptor_, 0) != 0) {
       throw RunError(path_ + ": cannot be written: " + error_text());
     }
@@ -65,35 +95,32 @@ RecordJournal::RecordJournal(std::string path, const std::string& key) : path_(s
 
 RecordJournal::~RecordJournal() { ::close(descriptor_); }
 
-void RecordJournal::load(const std::string& key) {
+void RecordJournal::load(const std::string& key,
+                         const std::function<void(std::size_t, std::string_view)>& take) {
   std::error_code none;
   if (!std::filesystem::exists(path_, none)) {
     return;
   }
-  std::string bytes;
   {
-    const OpenFile file(path_);
-    bytes = file.text(0, file.size());
-  }
-  std::string_view text = bytes;
-  if (next_record(text) != key) {
-    return;
-  }
-  for (std::string_view record = next_record(text); !record.empty(); record = next_record(text)) {
-    found_.emplace_back(record);
+    const RecordFile file(path_);
+    if (file.key() != key) {
+      return;
+    }
+    end_ = file.scan(take ? take : [](std::size_t, std::string_view) {});
   }
   // A record that was cut short must not hide those that follow.
-  if (::truncate(path_.c_str(), static_cast<::off_t>(bytes.size() - text.size())) != 0) {
+  if (::truncate(path_.c_str(), static_cast<::off_t>(end_)) != 0) {
     throw RunError(path_ + ": cannot be written: " + error_text());
   }
 }
 
-void RecordJournal::add(std::string_view record) {
+std::size_t RecordJournal::add(std::string_view record) {
   const std::lock_guard lock(mutex_);
-  append(framed(record));
+  return append(framed(record));
 }
 
-void RecordJournal::append(const std::string& bytes) {
+std::size_t RecordJournal::append(const std::string& bytes) {
+  const std::size_t place = end_;
   std::string_view rest = bytes;
   while (!rest.empty()) {
     const ::ssize_t written = ::write(descriptor_, rest.data(), rest.size());
@@ -102,6 +129,8 @@ void RecordJournal::append(const std::string& bytes) {
     }
     rest.remove_prefix(written < 0 ? 0 : static_cast<std::size_t>(written));
   }
+  end_ += bytes.size();
+  return place;
 }
 
 std::string program_identity() {
@@ -110,6 +139,16 @@ std::string program_identity() {
     return {};
   }
   return fmt::format("{} {}.{}", program.st_size, program.st_mtim.tv_sec, program.st_mtim.tv_nsec);
+}
+
+std::string program_fingerprint() {
+  static const std::string once = [] {
+    const OpenFile program("/proc/self/exe");
+    Fingerprint sum;
+    program.read(0, program.size(), [&sum](std::string_view block) { sum.add(block); });
+    return sum.text();
+  }();
+  return once;
 }
 
 }  // namespace kairos::experiments

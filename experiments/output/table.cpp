@@ -74,21 +74,19 @@ std::string to_text(const Cell& cell) {
   return std::visit(Writer{}, cell);
 }
 
-std::string Table::csv() const {
-  std::string out;
-  const auto append = [&out](std::size_t i, const std::string& text) {
-    out += i == 0 ? "" : ",";
-    out += quoted(text);
-  };
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    append(i, columns[i]);
+std::string csv_line(const std::vector<Cell>& row) {
+  std::string line;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    line += i == 0 ? "" : ",";
+    line += quoted(to_text(row[i]));
   }
-  out += '\n';
+  return line + '\n';
+}
+
+std::string Table::csv() const {
+  std::string out = csv_line({columns.begin(), columns.end()});
   for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      append(i, to_text(row[i]));
-    }
-    out += '\n';
+    out += csv_line(row);
   }
   return out;
 }

@@ -27,6 +27,9 @@ struct Table {
 /// As in the CSV, without quotes.
 [[nodiscard]] std::string to_text(const Cell& cell);
 
+/// A row as a line of CSV, as in `Table::csv`, with its line break.
+[[nodiscard]] std::string csv_line(const std::vector<Cell>& row);
+
 /// Reads what `Table::csv` writes; every cell is text. Throws `InputError` where it is not a table.
 [[nodiscard]] Table read_csv(const std::string& path);
 

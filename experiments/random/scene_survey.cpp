@@ -55,8 +55,7 @@ Tally run_survey(const SceneSurvey& survey, const std::string& journal,
   Tally total;
   const std::uint64_t blocks = (survey.count + block_size - 1) / block_size;
   if (!journal.empty()) {
-    finished.emplace(journal, survey_key(survey));
-    for (const std::string& record : finished->found()) {
+    finished.emplace(journal, survey_key(survey), [&](std::size_t, std::string_view record) {
       Archive archive(record);
       std::uint64_t block = 0;
       Tally tally;
@@ -65,7 +64,7 @@ Tally run_survey(const SceneSurvey& survey, const std::string& journal,
       if ((block + 1) * block_size <= survey.count && done.insert(block).second) {
         total.add(tally);
       }
-    }
+    });
     progress(total);
   }
   std::mutex mutex;

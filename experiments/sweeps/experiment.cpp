@@ -6,6 +6,7 @@
 #include "experiments/output/table.hpp"
 #include "experiments/output/text_or_nothing.hpp"
 #include "experiments/sweeps/sweep.hpp"
+#include "experiments/sweeps/sweep_plan.hpp"
 #include "simulation/version.hpp"
 
 #include <fmt/format.h>
@@ -69,6 +70,14 @@ Table manifest_of(const ExperimentSpec& spec, const ExperimentOptions& options) 
     add("repeats:" + sweep.name, fmt::format("{}", sweep.repeats));
     add("x:" + sweep.name, sweep.x);
     add("y:" + sweep.name, sweep.y);
+    if (sweep.logarithmic) {
+      add("log:" + sweep.name, "true");
+    }
+    for (const MethodSpec& method : sweep.methods) {
+      if (!method.mark.empty()) {
+        add(fmt::format("mark:{}:{}", sweep.name, method.name), method.mark);
+      }
+    }
   }
   for (const auto& [name, version] : versions()) {
     add("version:" + name, version);
@@ -82,44 +91,73 @@ OutputSet experiment_output(bool replace) {
   return {.seal = "manifest.csv", .begins = "key,value\nname,", .replace = replace};
 }
 
-ExperimentOutcome run_sweeps(const ExperimentSpec& spec, const ExperimentOptions& options,
-                             const std::string& folder) {
+namespace {
+
+RowSink into(AtomicFile& file) {
+  return [&file](const std::vector<Cell>& row) { file.write(csv_line(row)); };
+}
+
+/// Of one sweep, each table as a file of the folder; times of all sweeps are one table.
+SweepSinks files_in(OutputFolder& out, const SweepSpec& sweep, AtomicFile& timings) {
+  SweepSinks sinks;
+  sinks.runs = into(out.file(sweep.name + "_runs.csv"));
+  sinks.summary = into(out.file(sweep.name + "_summary.csv"));
+  if (sweep.series) {
+    sinks.series = into(out.file(sweep.name + "_series.csv"));
+    sinks.apexes = into(out.file(sweep.name + "_apexes.csv"));
+  }
+  sinks.timings = [&timings, name = sweep.name,
+                   first = true](const std::vector<Cell>& row) mutable {
+    if (!first) {
+      timings.write(csv_line({name, row[0], row[1], row[2]}));
+    }
+    first = false;
+  };
+  return sinks;
+}
+
+}  // namespace
+
+ExperimentOutcome publish_sweeps(const ExperimentSpec& spec, const ExperimentOptions& options,
+                                 const std::string& text, const WriteTables& write_tables,
+                                 const std::string& folder) {
   ExperimentOutcome outcome;
   const auto start = Clock::now();
   OutputFolder out(folder, experiment_output(options.force));
-  std::vector<std::string> journals;
+  AtomicFile& timings = out.file("timings.csv");
+  timings.write("sweep,run,method,seconds\n");
   Table columns{{"sweep", "column", "role", "unit", "label", "scale"}, {}};
-  Table timings{{"sweep", "run", "method", "seconds"}, {}};
   for (const SweepSpec& sweep : spec.sweeps) {
-    journals.push_back((std::filesystem::path(folder) / ("." + sweep.name + ".rows")).string());
-    const SweepResult result = run_sweep(sweep, options.threads, journals.back());
-    out.file(sweep.name + "_runs.csv").write(result.runs.csv());
-    out.file(sweep.name + "_summary.csv").write(result.summary.csv());
-    if (sweep.series) {
-      out.file(sweep.name + "_series.csv").write(result.series.csv());
-      out.file(sweep.name + "_apexes.csv").write(result.apexes.csv());
-    }
+    outcome.failed += write_tables(sweep, files_in(out, sweep, timings));
+    outcome.runs += SweepPlan(sweep).size();
     describe_columns(sweep, columns);
-    for (const auto& row : result.timings.rows) {
-      timings.rows.push_back({sweep.name, row[0], row[1], row[2]});
-    }
-    outcome.runs += result.runs.rows.size();
-    outcome.failed += result.failed;
   }
   out.file("columns.csv").write(columns.csv());
   out.file("manifest.csv").write(manifest_of(spec, options).csv());
-  out.file("spec.toml").write(text_or_nothing(spec.path));
-  out.file("timings.csv").write(timings.csv());
+  out.file("spec.toml").write(text);
   out.publish();
-  for (const std::string& journal : journals) {
-    std::error_code ignored;  // its rows are in the tables
-    std::filesystem::remove(journal, ignored);
-  }
   outcome.run_seconds = seconds_since(start);
 
   const auto drawing = Clock::now();
   outcome.figure_problem = draw_figures(spec.figure, folder);
   outcome.figure_seconds = seconds_since(drawing);
+  return outcome;
+}
+
+ExperimentOutcome run_sweeps(const ExperimentSpec& spec, const ExperimentOptions& options,
+                             const std::string& folder) {
+  std::vector<std::string> journals;
+  const ExperimentOutcome outcome = publish_sweeps(
+      spec, options, text_or_nothing(spec.path),
+      [&](const SweepSpec& sweep, const SweepSinks& sinks) {
+        journals.push_back((std::filesystem::path(folder) / ("." + sweep.name + ".rows")).string());
+        return stream_sweep(sweep, options.threads, journals.back(), sinks);
+      },
+      folder);
+  for (const std::string& journal : journals) {
+    std::error_code ignored;  // its rows are in the tables
+    std::filesystem::remove(journal, ignored);
+  }
   return outcome;
 }
 

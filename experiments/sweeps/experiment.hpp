@@ -3,8 +3,10 @@
 #include "experiments/output/output_folder.hpp"
 #include "experiments/sweeps/experiment_program.hpp"
 #include "experiments/sweeps/sweep_spec.hpp"
+#include "experiments/sweeps/sweep_table.hpp"
 
 #include <cstddef>
+#include <functional>
 #include <string>
 
 namespace kairos::experiments {
@@ -37,6 +39,14 @@ struct ExperimentOutcome {
 /// `NAME.svg`, `NAME.png` and `figures.csv`. Throws `InputError` and `RunError`.
 ExperimentOutcome run_sweeps(const ExperimentSpec& spec, const ExperimentOptions& options,
                              const std::string& folder);
+
+/// Gives the rows of a sweep to its tables; returns how many runs were refused, stopped or failed.
+using WriteTables = std::function<std::size_t(const SweepSpec& sweep, const SweepSinks& sinks)>;
+
+/// What `run_sweeps` writes, whatever the rows come from. `text`: of the spec.
+ExperimentOutcome publish_sweeps(const ExperimentSpec& spec, const ExperimentOptions& options,
+                                 const std::string& text, const WriteTables& write_tables,
+                                 const std::string& folder);
 
 /// The same for what a program made: its tables, `manifest.csv`, `columns.csv`, `spec.toml`,
 /// `timings.csv`, then the figures.

@@ -75,43 +75,103 @@ void check_readable(const SweepSpec& spec, const std::string& scene, const Sweep
   }
 }
 
-}  // namespace
-
-SweepResult run_sweep(const SweepSpec& spec, std::size_t threads, const std::string& journal) {
+RunRecord timed_run(const SweepSpec& spec, const std::string& scene, const PlannedRun& planned) {
   using Clock = std::chrono::steady_clock;
-  const SweepPlan plan(spec);
-  plan.check();
+  const auto start = Clock::now();
+  RunRecord record = run_one(spec, scene, planned);
+  record.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  return record;
+}
+
+/// The scene of a sweep whose spec makes sense.
+std::string checked_scene(const SweepSpec& spec, const SweepPlan& plan, const Shard& shard = {}) {
+  const std::size_t per_method = plan.size() / spec.methods.size();
+  plan.check([&](std::size_t i) { return shard.holds(i % per_method, per_method); });
   const std::string scene = scene_path(spec);
   check_readable(spec, scene, plan);
+  return scene;
+}
 
-  std::vector<RunRecord> records(plan.size());
-  std::vector<char> finished(plan.size(), 0);
-  std::optional<SweepJournal> kept;
-  if (!journal.empty()) {
-    kept.emplace(journal, sweep_key(spec, plan, scene));
-    for (auto& [index, record] : kept->found()) {
-      if (index >= records.size()) {
-        continue;  // not written by us
-      }
-      records[index] = std::move(record);
-      finished[index] = 1;
+/// Runs those of a shard that a journal does not have yet; returns how many rows it then has.
+std::size_t run_missing(const SweepSpec& spec, const SweepPlan& plan, const std::string& scene,
+                        std::size_t threads, const Shard& shard, SweepJournal& journal) {
+  const std::size_t per_method = plan.size() / spec.methods.size();
+  ProgressBar bar(spec.name, plan.size() / shard.count);
+  parallel_for(plan.size(), threads, [&](std::size_t i) {
+    if (!shard.holds(i % per_method, per_method)) {
+      return;
     }
+    if (!journal.has(i)) {
+      RunRecord record = timed_run(spec, scene, plan[i]);
+      journal.add(i, record);
+    }
+    bar.advance();
+  });
+  return journal.size();
+}
+
+RowSink into(Table& table) {
+  return [&table](const std::vector<Cell>& row) {
+    if (!table.columns.empty()) {
+      table.rows.push_back(row);
+      return;
+    }
+    for (const Cell& name : row) {
+      table.columns.push_back(to_text(name));
+    }
+  };
+}
+
+}  // namespace
+
+SweepSinks tables_in(SweepResult& result, bool series) {
+  SweepSinks sinks{into(result.runs), into(result.summary), {}, {}, into(result.timings)};
+  if (series) {
+    sinks.series = into(result.series);
+    sinks.apexes = into(result.apexes);
   }
+  return sinks;
+}
+
+SweepResult run_sweep(const SweepSpec& spec, std::size_t threads) {
+  const SweepPlan plan(spec);
+  const std::string scene = checked_scene(spec, plan);
+  std::vector<RunRecord> records(plan.size());
   {
     ProgressBar bar(spec.name, plan.size());
     parallel_for(plan.size(), threads, [&](std::size_t i) {
-      if (finished[i] == 0) {
-        const auto start = Clock::now();
-        records[i] = run_one(spec, scene, plan[i]);
-        records[i].seconds = std::chrono::duration<double>(Clock::now() - start).count();
-        if (kept) {
-          kept->add(i, records[i]);
-        }
-      }
+      records[i] = timed_run(spec, scene, plan[i]);
       bar.advance();
     });
   }
-  return sweep_tables(spec, plan, records);
+  SweepResult result;
+  result.failed = write_sweep_tables(
+      spec, plan, [&records](std::size_t i) { return records[i]; }, tables_in(result, spec.series));
+  return result;
+}
+
+std::size_t run_rows(const SweepSpec& spec, std::size_t threads, const std::string& journal,
+                     const std::string& key, const Shard& shard) {
+  const SweepPlan plan(spec);
+  const std::string scene = checked_scene(spec, plan, shard);
+  SweepJournal kept(journal, key, plan.size());
+  return run_missing(spec, plan, scene, threads, shard, kept);
+}
+
+std::size_t stream_sweep(const SweepSpec& spec, std::size_t threads, const std::string& journal,
+                         const SweepSinks& sinks) {
+  const SweepPlan plan(spec);
+  const std::string scene = checked_scene(spec, plan);
+  SweepJournal kept(journal, sweep_key(spec, plan, scene), plan.size());
+  run_missing(spec, plan, scene, threads, {}, kept);
+  const RecordFile rows(journal);
+  return write_sweep_tables(
+      spec, plan,
+      [&](std::size_t i) {
+        std::size_t index = 0;
+        return read_row(rows.at(kept.places()[i]), index);
+      },
+      sinks);
 }
 
 }  // namespace kairos::experiments

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace kairos::experiments {
 
 // Found by the archive's argument-dependent lookup.
@@ -27,21 +29,31 @@ void persist_row(Archive& archive, std::size_t& index, RunRecord& record) {
 
 }  // namespace
 
-SweepJournal::SweepJournal(std::string path, const std::string& key)
-    : journal_(std::move(path), key) {
-  for (const std::string& bytes : journal_.found()) {
-    Archive archive(bytes);
-    std::size_t index = 0;
-    RunRecord row;
-    persist_row(archive, index, row);
-    found_[index] = std::move(row);
-  }
+RunRecord read_row(std::string_view bytes, std::size_t& index) {
+  Archive archive(bytes);
+  RunRecord row;
+  persist_row(archive, index, row);
+  return row;
+}
+
+SweepJournal::SweepJournal(const std::string& path, const std::string& key, std::size_t runs)
+    : places_(runs, none), journal_(path, key, [this](std::size_t place, std::string_view record) {
+        std::size_t index = 0;
+        (void)read_row(record, index);
+        if (index < places_.size()) {  // else not written by us
+          places_[index] = place;
+        }
+      }) {}
+
+std::size_t SweepJournal::size() const {
+  return places_.size() -
+         static_cast<std::size_t>(std::count(places_.begin(), places_.end(), none));
 }
 
 void SweepJournal::add(std::size_t index, RunRecord& record) {
   Archive archive;
   persist_row(archive, index, record);
-  journal_.add(archive.bytes());
+  places_[index] = journal_.add(archive.bytes());
 }
 
 std::string sweep_key(const SweepSpec& spec, const SweepPlan& plan, const std::string& scene) {

@@ -250,8 +250,11 @@ PlannedRun SweepPlan::operator[](std::size_t index) const {
   return run;
 }
 
-void SweepPlan::check() const {
+void SweepPlan::check(const std::function<bool(std::size_t)>& of) const {
   for (std::size_t i = 0; i < size_; ++i) {
+    if (of && !of(i)) {
+      continue;
+    }
     const PlannedRun run = (*this)[i];
     if (run.repeat == 0) {
       check_method(spec_, spec_.methods[run.method], run.choice);

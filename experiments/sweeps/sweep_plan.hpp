@@ -4,6 +4,7 @@
 #include "experiments/sweeps/sweep_spec.hpp"
 #include "simulation/simulate.hpp"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -37,9 +38,9 @@ class SweepPlan {
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] PlannedRun operator[](std::size_t index) const;
   [[nodiscard]] RunPlace place(std::size_t index) const;
-  /// Goes through all runs. Throws `InputError` for specs that cannot be meant: unknown schemes,
-  /// wrong expressions, options out of range.
-  void check() const;
+  /// Goes through all runs, or those that `of` picks by their index. Throws `InputError` for specs
+  /// that cannot be meant: unknown schemes, wrong expressions, options out of range.
+  void check(const std::function<bool(std::size_t index)>& of = {}) const;
 
  private:
   SweepSpec spec_;

@@ -59,11 +59,22 @@ void read_settings(const SpecSection& section, std::vector<Setting>& out) {
   }
 }
 
+/// A mark of a line, as matplotlib writes it.
+void check_mark(const Item& item, const std::string& mark) {
+  constexpr std::string_view marks = "os^DvPX*<>hpd8H";
+  if (mark.size() != 1 || marks.find(mark) == std::string_view::npos) {
+    item.fail(fmt::format("'{}' is no mark; allowed: one of {}", mark, marks));
+  }
+}
+
 MethodSpec read_method(const SpecSection& section) {
   MethodSpec method;
   for (const auto& [key, item] : section.entries()) {
     if (key == "name") {
       method.name = section.text("name");
+    } else if (key == "mark") {
+      method.mark = section.text("mark");
+      check_mark(item, method.mark);
     } else if (key == "set") {
       for (const SpecSection& set : section.tables("set")) {
         read_settings(set, method.set);
@@ -71,7 +82,7 @@ MethodSpec read_method(const SpecSection& section) {
     } else if (find_option(key) != nullptr) {
       put(read_setting(key, item), method.options);
     } else {
-      item.fail(fmt::format("unknown key; allowed: name, set, {}", option_names()));
+      item.fail(fmt::format("unknown key; allowed: name, mark, set, {}", option_names()));
     }
   }
   return method;
@@ -126,7 +137,7 @@ void check_names(const SpecSection& section, const SweepSpec& sweep) {
 const Keys& sweep_keys() {
   static const Keys keys = {"scene",   "subject", "seed",      "repeats",   "metrics", "series",
                             "samples", "axis",    "method",    "set",       "derive",  "caption",
-                            "x",       "y",       "constants", "reference", "options"};
+                            "x",       "y",       "constants", "reference", "options", "log"};
   return keys;
 }
 
@@ -143,6 +154,7 @@ SweepSpec read_sweep(const SpecSection& section, SweepSpec sweep) {
       section.count("seed", static_cast<std::int64_t>(sweep.seed), 0, INT64_MAX));
   sweep.repeats = section.count("repeats", sweep.repeats, 1, max_repeats);
   sweep.series = section.flag("series", sweep.series);
+  sweep.logarithmic = section.flag("log", sweep.logarithmic);
   sweep.samples = section.count("samples", sweep.samples, 2, 1000000);
   if (section.find("metrics")) {
     sweep.metrics = section.texts("metrics");
@@ -196,7 +208,7 @@ void check_sweep(const SpecSection& section, SweepSpec& sweep) {
     section.fail("metrics", fmt::format("is missing; allowed: {}", metric_names()));
   }
   if (sweep.methods.empty()) {
-    sweep.methods.push_back({"default", {}, {}});
+    sweep.methods.push_back({"default", {}, {}, {}});
   }
   if (sweep.samples == 0) {
     sweep.samples = 400;

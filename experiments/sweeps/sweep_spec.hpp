@@ -55,6 +55,7 @@ struct MethodSpec {
   std::string name;
   std::vector<Setting> options;  ///< scheme, integrator, detector, impact, frame, ...
   std::vector<Setting> set;      ///< scene values that belong to this method (bounds, gravity)
+  std::string mark;              ///< of its line in the generic figure; empty: its usual one
 };
 
 /// A column computed from axes, constants and metrics: predictions.
@@ -87,6 +88,7 @@ struct SweepSpec {
   std::int64_t samples = 0;  ///< of a series, per run
   std::string x;             ///< for the generic figure: axis
   std::string y;             ///< and metric
+  bool logarithmic = false;  ///< metrics are drawn on logarithmic scales
 };
 
 /// What a spec file says: the sweeps and how to present them.

@@ -1,13 +1,14 @@
 #include "experiments/sweeps/sweep_table.hpp"
 
 #include "core/error.hpp"
+#include "experiments/sweeps/sweep.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <stdexcept>
+#include <utility>
 
 namespace kairos::experiments {
 namespace {
@@ -20,23 +21,23 @@ bool is_drawn(const Axis& axis) { return axis.kind != Axis::Kind::listed; }
 
 /// What all tables start with: the method and the axes; without those that are drawn per repeat in
 /// tables over points.
-void add_point_columns(const SweepSpec& spec, bool drawn_too, Table& table) {
-  table.columns.emplace_back("method");
+void add_point_columns(const SweepSpec& spec, bool drawn_too, std::vector<Cell>& row) {
+  row.emplace_back(std::string("method"));
   for (const Axis& axis : spec.axes) {
     if (drawn_too || !is_drawn(axis)) {
-      table.columns.push_back(axis.name);
+      row.emplace_back(axis.name);
     }
   }
 }
 
-std::vector<Cell> point_cells(const SweepSpec& spec, const RunPlace& run, bool drawn_too) {
-  std::vector<Cell> cells{spec.methods[run.method].name};
+void add_point_cells(const SweepSpec& spec, const RunPlace& run, bool drawn_too,
+                     std::vector<Cell>& row) {
+  row.emplace_back(spec.methods[run.method].name);
   for (std::size_t i = 0; i < spec.axes.size(); ++i) {
     if (drawn_too || !is_drawn(spec.axes[i])) {
-      cells.push_back(axis_cell(run.axis_values[i]));
+      row.push_back(axis_cell(run.axis_values[i]));
     }
   }
-  return cells;
 }
 
 std::optional<double> metric_of(const RunRecord& record, std::size_t i) {
@@ -62,95 +63,75 @@ std::optional<double> derived_of(const SweepSpec& spec, const Derived& derived,
   }
 }
 
-/// Differences to the reference method at the same point and repeat.
-class Reference {
+/// The numbers of a run: metrics, differences to the reference, predictions.
+class Numbers {
  public:
-  Reference(const SweepSpec& spec, const SweepPlan& plan, const std::vector<RunRecord>& records)
-      : records_(records), per_method_(plan.size() / spec.methods.size()) {
+  Numbers(const SweepSpec& spec, const SweepPlan& plan, const RecordSource& records)
+      : spec_(spec),
+        plan_(plan),
+        records_(records),
+        per_method_(plan.size() / spec.methods.size()) {
+    names_ = spec.metrics;
+    for (const std::string& metric : spec.metrics) {
+      if (!spec.reference.empty()) {
+        names_.push_back(metric + "_error");
+      }
+    }
+    for (const Derived& derived : spec.derived) {
+      names_.push_back(derived.name);
+    }
     for (std::size_t m = 0; m < spec.methods.size(); ++m) {
-      first_ = spec.methods[m].name == spec.reference ? m * per_method_ : first_;
+      reference_ = spec.methods[m].name == spec.reference ? m * per_method_ : reference_;
     }
   }
-  [[nodiscard]] std::optional<double> error(std::size_t run, std::size_t metric) const {
-    const auto ours = metric_of(records_[run], metric);
-    const auto theirs = metric_of(records_[first_ + run % per_method_], metric);
-    return ours && theirs ? std::optional(std::abs(*ours - *theirs)) : std::nullopt;
+
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+
+  void of(std::size_t run, const RunRecord& record,
+          std::vector<std::optional<double>>& numbers) const {
+    numbers.clear();
+    for (std::size_t i = 0; i < spec_.metrics.size(); ++i) {
+      numbers.push_back(metric_of(record, i));
+    }
+    if (!spec_.reference.empty()) {
+      add_errors(run, record, numbers);
+    }
+    if (!spec_.derived.empty()) {
+      const PlannedRun planned = plan_[run];
+      for (const Derived& derived : spec_.derived) {
+        numbers.push_back(derived_of(spec_, derived, planned, record));
+      }
+    }
   }
 
  private:
-  const std::vector<RunRecord>& records_;
+  /// Differences to the reference method at the same point and repeat.
+  void add_errors(std::size_t run, const RunRecord& record,
+                  std::vector<std::optional<double>>& numbers) const {
+    const std::size_t other = reference_ + run % per_method_;
+    const RunRecord reference = other == run ? record : records_(other);
+    for (std::size_t i = 0; i < spec_.metrics.size(); ++i) {
+      const auto ours = metric_of(record, i);
+      const auto theirs = metric_of(reference, i);
+      numbers.push_back(ours && theirs ? std::optional(std::abs(*ours - *theirs)) : std::nullopt);
+    }
+  }
+
+  const SweepSpec& spec_;
+  const SweepPlan& plan_;
+  const RecordSource& records_;
   std::size_t per_method_;
-  std::size_t first_ = 0;
+  std::size_t reference_ = 0;  ///< where the runs of the reference method begin
+  std::vector<std::string> names_;
 };
 
 Cell optional_cell(const std::optional<double>& x) { return x ? number_cell(*x) : Cell(); }
 
-/// The numbers of each run: metrics, differences to the reference, predictions.
-struct Numbers {
-  std::vector<std::string> names;
-  std::vector<std::vector<std::optional<double>>> runs;
-};
-
-Numbers numbers_of(const SweepSpec& spec, const SweepPlan& plan,
-                   const std::vector<RunRecord>& records) {
-  Numbers out;
-  out.names = spec.metrics;
-  for (const std::string& metric : spec.metrics) {
-    if (!spec.reference.empty()) {
-      out.names.push_back(metric + "_error");
-    }
-  }
-  for (const Derived& derived : spec.derived) {
-    out.names.push_back(derived.name);
-  }
-  const Reference reference(spec, plan, records);
-  for (std::size_t r = 0; r < plan.size(); ++r) {
-    std::vector<std::optional<double>> row;
-    for (std::size_t i = 0; i < spec.metrics.size(); ++i) {
-      row.push_back(metric_of(records[r], i));
-    }
-    for (std::size_t i = 0; !spec.reference.empty() && i < spec.metrics.size(); ++i) {
-      row.push_back(reference.error(r, i));
-    }
-    for (const Derived& derived : spec.derived) {
-      row.push_back(derived_of(spec, derived, plan[r], records[r]));
-    }
-    out.runs.push_back(std::move(row));
-  }
-  return out;
-}
-
-Table runs_table(const SweepSpec& spec, const SweepPlan& plan,
-                 const std::vector<RunRecord>& records, const Numbers& numbers) {
-  Table table;
-  table.columns.emplace_back("run");
-  add_point_columns(spec, true, table);
-  table.columns.insert(table.columns.end(), {"repeat", "status", "reason"});
-  table.columns.insert(table.columns.end(), numbers.names.begin(), numbers.names.end());
-  for (std::size_t r = 0; r < plan.size(); ++r) {
-    const RunPlace place = plan.place(r);
-    std::vector<Cell> row{static_cast<std::int64_t>(r)};
-    const auto point = point_cells(spec, place, true);
-    row.insert(row.end(), point.begin(), point.end());
-    row.insert(row.end(), {place.repeat, records[r].status, records[r].reason});
-    for (const auto& x : numbers.runs[r]) {
-      row.push_back(optional_cell(x));
-    }
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
-/// Mean and quartiles of the runs [first, first + count) of one point.
-void append_distribution(const Numbers& numbers, std::size_t column, std::size_t first,
-                         std::size_t count, std::vector<Cell>& row) {
-  std::vector<double> values;
+/// Mean and quartiles of one column over the repeats of a point; `values` are sorted.
+void append_distribution(std::vector<double>& values, std::vector<Cell>& row) {
   CompensatedSum sum;
-  for (std::size_t r = first; r < first + count; ++r) {
-    if (const auto& x = numbers.runs[r][column]) {
-      values.push_back(*x);
-      sum.add(*x);
-    }
+  for (const double x : values) {
+    sum.add(x);
   }
   if (values.empty()) {
     row.resize(row.size() + 6);
@@ -163,79 +144,141 @@ void append_distribution(const Numbers& numbers, std::size_t column, std::size_t
   }
 }
 
-Table summary_table(const SweepSpec& spec, const SweepPlan& plan,
-                    const std::vector<RunRecord>& records, const Numbers& numbers) {
-  Table table;
-  add_point_columns(spec, false, table);
-  table.columns.insert(table.columns.end(), {"runs", "completed"});
-  for (const std::string& name : numbers.names) {
-    for (const char* statistic : {"mean", "min", "q1", "median", "q3", "max"}) {
-      table.columns.push_back(fmt::format("{}.{}", name, statistic));
-    }
-  }
-  const auto repeats = static_cast<std::size_t>(spec.repeats);
-  for (std::size_t first = 0; first < plan.size(); first += repeats) {
-    std::vector<Cell> row = point_cells(spec, plan.place(first), false);
-    std::int64_t completed = 0;
-    for (std::size_t r = first; r < first + repeats; ++r) {
-      completed += records[r].status == "completed" ? 1 : 0;
-    }
-    row.insert(row.end(), {spec.repeats, completed});
-    for (std::size_t i = 0; i < numbers.names.size(); ++i) {
-      append_distribution(numbers, i, first, repeats, row);
-    }
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
-Table series_table(const SweepSpec& spec, const SweepPlan& plan,
-                   const std::vector<RunRecord>& records) {
-  Table table;
-  table.columns.emplace_back("run");
-  add_point_columns(spec, true, table);
-  table.columns.insert(table.columns.end(), {"t", "frame", "kinetic", "potential", "gain"});
-  for (std::size_t i = 0; i < energy_line_count; ++i) {
-    table.columns.emplace_back(to_string(static_cast<EnergyLine>(i)));
-  }
-  table.columns.emplace_back("unexplained");
-  for (std::size_t r = 0; r < plan.size(); ++r) {
-    const RunPlace place = plan.place(r);
-    for (const auto& sample : records[r].samples) {
-      std::vector<Cell> row{static_cast<std::int64_t>(r)};
-      const auto point = point_cells(spec, place, true);
-      row.insert(row.end(), point.begin(), point.end());
-      row.insert(row.end(), {sample.time, sample.frame, number_cell(sample.kinetic),
-                             number_cell(sample.potential), number_cell(sample.gain)});
-      for (const double line : sample.lines) {
-        row.push_back(number_cell(line));
+/// Gathers the repeats of one point, and tells them as one row.
+class Summary {
+ public:
+  Summary(const SweepSpec& spec, const std::vector<std::string>& names, const RowSink& sink)
+      : spec_(spec), sink_(sink), values_(names.size()) {
+    std::vector<Cell> header;
+    add_point_columns(spec, false, header);
+    header.insert(header.end(), {std::string("runs"), std::string("completed")});
+    for (const std::string& name : names) {
+      for (const char* statistic : {"mean", "min", "q1", "median", "q3", "max"}) {
+        header.emplace_back(fmt::format("{}.{}", name, statistic));
       }
-      row.push_back(number_cell(sample.unexplained));
-      table.rows.push_back(std::move(row));
     }
+    sink_(header);
   }
-  return table;
-}
 
-Table apex_table(const SweepSpec& spec, const SweepPlan& plan,
-                 const std::vector<RunRecord>& records) {
-  Table table;
-  table.columns.emplace_back("run");
-  add_point_columns(spec, true, table);
-  table.columns.insert(table.columns.end(), {"apex", "t", "height"});
-  for (std::size_t r = 0; r < plan.size(); ++r) {
-    const RunPlace place = plan.place(r);
-    std::int64_t n = 0;
-    for (const auto& apex : records[r].apexes) {
-      std::vector<Cell> row{static_cast<std::int64_t>(r)};
-      const auto point = point_cells(spec, place, true);
-      row.insert(row.end(), point.begin(), point.end());
-      row.insert(row.end(), {++n, number_cell(apex.time), number_cell(apex.height)});
-      table.rows.push_back(std::move(row));
+  void add(const RunPlace& place, const RunRecord& record,
+           const std::vector<std::optional<double>>& numbers) {
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      if (numbers[i]) {
+        values_[i].push_back(*numbers[i]);
+      }
+    }
+    completed_ += record.status == "completed" ? 1 : 0;
+    if (place.repeat + 1 == spec_.repeats) {
+      finish(place);
     }
   }
-  return table;
-}
+
+ private:
+  void finish(const RunPlace& place) {
+    std::vector<Cell> row;
+    add_point_cells(spec_, place, false, row);
+    row.insert(row.end(), {spec_.repeats, completed_});
+    for (std::vector<double>& values : values_) {
+      append_distribution(values, row);
+      values.clear();
+    }
+    completed_ = 0;
+    sink_(row);
+  }
+
+  const SweepSpec& spec_;
+  const RowSink& sink_;
+  std::vector<std::vector<double>> values_;  ///< of the point, by number
+  std::int64_t completed_ = 0;
+};
+
+/// The tables with a row per run, or several.
+class RunTables {
+ public:
+  RunTables(const SweepSpec& spec, const std::vector<std::string>& names, const SweepSinks& sinks)
+      : spec_(spec), sinks_(sinks) {
+    tell_header(sinks.runs, [&](std::vector<Cell>& row) {
+      row.insert(row.end(), {std::string("repeat"), std::string("status"), std::string("reason")});
+      row.insert(row.end(), names.begin(), names.end());
+    });
+    tell_header(sinks.series, [](std::vector<Cell>& row) {
+      for (const char* name : {"t", "frame", "kinetic", "potential", "gain"}) {
+        row.emplace_back(std::string(name));
+      }
+      for (std::size_t i = 0; i < energy_line_count; ++i) {
+        row.emplace_back(std::string(to_string(static_cast<EnergyLine>(i))));
+      }
+      row.emplace_back(std::string("unexplained"));
+    });
+    tell_header(sinks.apexes, [](std::vector<Cell>& row) {
+      row.insert(row.end(), {std::string("apex"), std::string("t"), std::string("height")});
+    });
+    if (sinks.timings) {
+      sinks.timings({std::string("run"), std::string("method"), std::string("seconds")});
+    }
+  }
+
+  void add(const RunPlace& place, const RunRecord& record,
+           const std::vector<std::optional<double>>& numbers) {
+    std::vector<Cell> point{static_cast<std::int64_t>(place.index)};
+    add_point_cells(spec_, place, true, point);
+    if (sinks_.runs) {
+      row_ = point;
+      row_.insert(row_.end(), {place.repeat, record.status, record.reason});
+      for (const auto& x : numbers) {
+        row_.push_back(optional_cell(x));
+      }
+      sinks_.runs(row_);
+    }
+    if (sinks_.series) {
+      add_series(point, record);
+    }
+    if (sinks_.apexes) {
+      add_apexes(point, record);
+    }
+    if (sinks_.timings) {
+      sinks_.timings({static_cast<std::int64_t>(place.index), spec_.methods[place.method].name,
+                      number_cell(record.seconds)});
+    }
+  }
+
+ private:
+  template <typename AddColumns>
+  void tell_header(const RowSink& sink, const AddColumns& add_columns) const {
+    if (sink) {
+      std::vector<Cell> row{std::string("run")};
+      add_point_columns(spec_, true, row);
+      add_columns(row);
+      sink(row);
+    }
+  }
+
+  void add_series(const std::vector<Cell>& point, const RunRecord& record) {
+    for (const auto& sample : record.samples) {
+      row_ = point;
+      row_.insert(row_.end(), {sample.time, sample.frame, number_cell(sample.kinetic),
+                               number_cell(sample.potential), number_cell(sample.gain)});
+      for (const double line : sample.lines) {
+        row_.push_back(number_cell(line));
+      }
+      row_.push_back(number_cell(sample.unexplained));
+      sinks_.series(row_);
+    }
+  }
+
+  void add_apexes(const std::vector<Cell>& point, const RunRecord& record) {
+    std::int64_t n = 0;
+    for (const auto& apex : record.apexes) {
+      row_ = point;
+      row_.insert(row_.end(), {++n, number_cell(apex.time), number_cell(apex.height)});
+      sinks_.apexes(row_);
+    }
+  }
+
+  const SweepSpec& spec_;
+  const SweepSinks& sinks_;
+  std::vector<Cell> row_;
+};
 
 }  // namespace
 
@@ -246,24 +289,27 @@ double quantile(const std::vector<double>& sorted, double p) {
   return sorted[below] + (sorted[above] - sorted[below]) * (at - static_cast<double>(below));
 }
 
-SweepResult sweep_tables(const SweepSpec& spec, const SweepPlan& plan,
-                         const std::vector<RunRecord>& records) {
-  SweepResult result;
-  const Numbers numbers = numbers_of(spec, plan, records);
-  result.runs = runs_table(spec, plan, records, numbers);
-  result.summary = summary_table(spec, plan, records, numbers);
-  if (spec.series) {
-    result.series = series_table(spec, plan, records);
-    result.apexes = apex_table(spec, plan, records);
+std::size_t write_sweep_tables(const SweepSpec& spec, const SweepPlan& plan,
+                               const RecordSource& records, const SweepSinks& sinks) {
+  const Numbers numbers(spec, plan, records);
+  RunTables tables(spec, numbers.names(), sinks);
+  std::optional<Summary> summary;
+  if (sinks.summary) {
+    summary.emplace(spec, numbers.names(), sinks.summary);
   }
-  result.timings.columns = {"run", "method", "seconds"};
+  std::vector<std::optional<double>> of_run;
+  std::size_t failed = 0;
   for (std::size_t r = 0; r < plan.size(); ++r) {
-    result.failed += records[r].status == "completed" ? 0U : 1U;
-    result.timings.rows.push_back({static_cast<std::int64_t>(r),
-                                   spec.methods[plan.place(r).method].name,
-                                   number_cell(records[r].seconds)});
+    const RunPlace place = plan.place(r);
+    const RunRecord record = records(r);
+    numbers.of(r, record, of_run);
+    tables.add(place, record, of_run);
+    if (summary) {
+      summary->add(place, record, of_run);
+    }
+    failed += record.status == "completed" ? 0U : 1U;
   }
-  return result;
+  return failed;
 }
 
 }  // namespace kairos::experiments

@@ -1,9 +1,10 @@
 #pragma once
 
 #include "experiments/metrics/metric_series.hpp"
-#include "experiments/sweeps/sweep.hpp"
+#include "experiments/output/table.hpp"
 #include "experiments/sweeps/sweep_plan.hpp"
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,8 +21,23 @@ struct RunRecord {
   double seconds = 0.0;
 };
 
-/// Puts the records of all runs, in the order of the plan, into tables.
-[[nodiscard]] SweepResult sweep_tables(const SweepSpec& spec, const SweepPlan& plan,
-                                       const std::vector<RunRecord>& records);
+/// Gives the record of a run, by its index in the plan.
+using RecordSource = std::function<RunRecord(std::size_t index)>;
+/// Takes a row of a table; the first one holds the names of the columns.
+using RowSink = std::function<void(const std::vector<Cell>& row)>;
+
+/// Where the tables of a sweep go, row by row. What is empty is not made.
+struct SweepSinks {
+  RowSink runs;     ///< one row per run in the order of the plan; what failed is a row, too
+  RowSink summary;  ///< one row per method and point: quartiles over the repeats
+  RowSink series;   ///< energy over time
+  RowSink apexes;
+  RowSink timings;  ///< seconds per run
+};
+
+/// Turns the records of all runs into the rows of the tables. Of the records no more than one is in
+/// memory, of the numbers those of one point. Returns how many were refused, stopped or failed.
+std::size_t write_sweep_tables(const SweepSpec& spec, const SweepPlan& plan,
+                               const RecordSource& records, const SweepSinks& sinks);
 
 }  // namespace kairos::experiments

@@ -1,7 +1,7 @@
 #include "experiments/parallel_for.hpp"
 #include "experiments/rally/interval.hpp"
 #include "experiments/rally/rally_run.hpp"
-#include "experiments/sweeps/sweep_table.hpp"
+#include "experiments/sweeps/sweep.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
 
 #include <fmt/format.h>

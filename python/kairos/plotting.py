@@ -47,7 +47,7 @@ def plot(*runs, labels=None, bodies=None):
 
     runs: `Run`s, or folders that `kairos run --out` wrote. labels: a title for each.
     bodies: names of those that are drawn (default: those that move freely, up to six).
-    Returns a matplotlib figure. Needs matplotlib.
+    Returns a matplotlib figure: the picture that `kairos plot` draws. Needs matplotlib.
     """
     script = _script()
     labels = labels or [None] * len(runs)

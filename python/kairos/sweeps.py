@@ -1,4 +1,4 @@
-"""Sweeps and advice: the program's work."""
+"""Sweeps and advice: the program's work, here and on other machines."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import contextlib
 import glob
 import os
 import re
+import shutil
 import tempfile
 
 from .program import call
@@ -67,15 +68,62 @@ def _size(full):
     return "--full" if full else "--quick"
 
 
-def sweep(spec, *, out=None, full=False, threads=0) -> Sweep:
+def run_shard(spec: str, index: int, count: int, full: bool, threads: int) -> dict[str, bytes]:
+    """One shard, in a folder of its own: its files. What a worker of a cluster is asked for; the
+    worker has to have kairos, and the spec and its scene under the same path."""
+    folder = tempfile.mkdtemp(prefix="kairos-shard-")
+    try:
+        call("sweep", spec, _size(full), "--shard", f"{index}/{count}", "--threads", threads,
+             "--out", folder)
+        files = {}
+        for name in os.listdir(folder):
+            with open(os.path.join(folder, name), "rb") as file:
+                files[name] = file.read()
+        return files
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _keep_shard(files, folder):
+    os.makedirs(folder, exist_ok=True)
+    for name, content in files.items():
+        with open(os.path.join(folder, name), "wb") as file:
+            file.write(content)
+
+
+def sweep(spec, *, out=None, full=False, threads=0, client=None, shards=None) -> Sweep:
     """Runs a sweep: the path of a spec (TOML), or its text.
 
     out: folder of the tables (default: a temporary one). threads: 0: one per core.
+    client: a dask.distributed.Client: shards are tasks of that cluster, on Kubernetes, Slurm, PBS
+        or this machine. A worker that dies loses nothing: its shards are run again elsewhere.
+    shards: how many (default: four for each core of the cluster). Tables are the same bytes,
+        whatever their number and wherever they were run.
     """
     with _folder(out) as folder:
         path = _spec_file(spec, folder if out is None else tempfile.mkdtemp(prefix="kairos-spec-"))
-        call("sweep", path, _size(full), "--threads", threads, "--out", folder)
-        return Sweep(folder)
+        if client is None:
+            call("sweep", path, _size(full), "--threads", threads, "--out", folder)
+            return Sweep(folder)
+        count = shards or 4 * max(1, sum(client.ncores().values()))
+        from dask.distributed import as_completed
+        futures = {client.submit(run_shard, path, index, count, full, 1, pure=False): index
+                   for index in range(1, count + 1)}
+        parts = tempfile.mkdtemp(prefix="kairos-shards-")
+        try:
+            for future in as_completed(futures):
+                _keep_shard(future.result(), os.path.join(parts, str(futures[future])))
+                future.release()  # its rows are on the disk
+            return merge(parts, out=folder)
+        finally:
+            shutil.rmtree(parts, ignore_errors=True)
+
+
+def merge(*folders, out) -> Sweep:
+    """Merges shards: folders of shards, or folders of such folders. Raises `InputError` that names
+    a shard that is missing, there twice, not finished, or of another spec or version."""
+    call("sweep", "--merge", *folders, "--out", out)
+    return Sweep(out)
 
 
 @contextlib.contextmanager

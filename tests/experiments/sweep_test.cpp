@@ -353,21 +353,25 @@ TEST_CASE("rows of another sweep, or torn ones, are not taken for this one's", "
   RunRecord record;
   record.status = "completed";
   record.metrics = {1.5, std::nullopt};
+  constexpr std::size_t runs = 8;
   {
-    SweepJournal journal(path, key);
+    SweepJournal journal(path, key, runs);
     journal.add(3, record);
     journal.add(1, record);
   }
-  CHECK(SweepJournal(path, key).found().size() == 2);
+  CHECK(SweepJournal(path, key, runs).size() == 2);
   const std::string bytes = tests::read_all(path);
   for (std::size_t cut = 1; cut < 60; ++cut) {  // within the last record
     const std::string torn = folder.file("torn", bytes.substr(0, bytes.size() - cut));
-    SweepJournal journal(torn, key);
-    REQUIRE(journal.found().size() == 1);
-    CHECK(journal.found().at(3).metrics == record.metrics);
+    SweepJournal journal(torn, key, runs);
+    REQUIRE(journal.size() == 1);
+    REQUIRE(journal.has(3));
+    std::size_t index = 0;
+    CHECK(read_row(RecordFile(torn).at(journal.places()[3]), index).metrics == record.metrics);
+    CHECK(index == 3);
     journal.add(7, record);
-    CHECK(SweepJournal(torn, key).found().size() == 2);
+    CHECK(SweepJournal(torn, key, runs).size() == 2);
   }
-  CHECK(SweepJournal(path, "kairos sweep 1 fedcba9876543210").found().empty());
-  CHECK(SweepJournal(folder.file("foreign", "not a journal"), key).found().empty());
+  CHECK(SweepJournal(path, "kairos sweep 1 fedcba9876543210", runs).size() == 0);
+  CHECK(SweepJournal(folder.file("foreign", "not a journal"), key, runs).size() == 0);
 }

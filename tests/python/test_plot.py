@@ -1,4 +1,4 @@
-"""kairos.plot: runs over time, in memory or as files."""
+"""`kairos plot` and kairos.plot: one picture, by the same functions."""
 
 import numpy as np
 import pytest
@@ -14,15 +14,26 @@ def runs_of(program, tmp_path, names):
     return [tmp_path / name for name in names]
 
 
-def test_a_run_in_memory_is_drawn_as_its_files_are(program, tmp_path):
-    names = ["bounce", "spinning-box"]
-    figure = kairos.plot(*runs_of(program, tmp_path, names))
-    in_memory = kairos.plot(*[kairos.run(name, duration=1) for name in names])
+def test_the_command_draws_what_the_package_draws(program, tmp_path):
+    folders = runs_of(program, tmp_path, ["bounce", "spinning-box"])
+    said = program("plot", *folders, "--out", tmp_path / "two.svg").stdout.strip()
+    assert said == str(tmp_path / "two.svg")
+    figure = kairos.plot(*folders)
+    figure.savefig(tmp_path / "package.svg", metadata={"Date": None})
+    assert (tmp_path / "two.svg").read_bytes() == (tmp_path / "package.svg").read_bytes()
+    # A run in memory is the same lines as its files.
+    in_memory = kairos.plot(*[kairos.run(name, duration=1) for name in ("bounce", "spinning-box")])
     for ours, theirs in zip(in_memory.axes, figure.axes):
         assert [line.get_label() for line in ours.lines] == [line.get_label() for line in theirs.lines]
         for a, b in zip(ours.lines, theirs.lines):
             assert np.array_equal(np.asarray(a.get_ydata(), float), np.asarray(b.get_ydata(), float),
                                   equal_nan=True)
+
+
+def test_without_out_the_picture_lies_with_the_run(program, tmp_path):
+    folder, = runs_of(program, tmp_path, ["bounce"])
+    program("plot", folder)
+    assert (folder / "plot.png").stat().st_size > 20000
 
 
 def test_gaps_of_pictures_are_the_gaps_of_the_library():
@@ -55,7 +66,10 @@ def test_gaps_of_pictures_are_the_gaps_of_the_library():
 
 def test_wrong_input_is_named(program, tmp_path):
     folder, = runs_of(program, tmp_path, ["bounce"])
-    with pytest.raises(SystemExit, match="is no body of bounce"):
+    for arguments, message in (((tmp_path,), "holds no summary.json"),
+                               ((folder, "--out", tmp_path / "x.gif"), "allowed: a file .png"),
+                               ((folder, "--bodies", "bell"), "is no body of bounce")):
+        done = program("plot", *arguments, check=False)
+        assert done.returncode in (1, 2) and message in done.stderr
+    with pytest.raises(SystemExit, match="is no body"):
         kairos.plot(folder, bodies=["bell"])
-    with pytest.raises(SystemExit, match="is no folder that kairos run --out wrote"):
-        kairos.plot(tmp_path)

@@ -1,9 +1,18 @@
-"""Sweeps and advice from Python."""
+"""Sweeps from Python, and on the engines of clusters: the same bytes, whatever was killed."""
+
+import logging
+import os
+import shutil
+import signal
+import subprocess
+import threading
+import time
 
 import numpy as np
 import pytest
 
 import kairos
+from conftest import SOURCE
 
 SPEC = """
 scene = "bounce"
@@ -35,6 +44,17 @@ def spec(tmp_path):
     path = tmp_path / "spec.toml"
     path.write_text(SPEC)
     return path
+
+
+def differences(a, b):
+    """Names of tables whose bytes differ; times do, and pictures are not compared."""
+    def tables(folder):
+        return {name for name in os.listdir(folder)
+                if name.endswith((".csv", ".toml")) and name not in ("timings.csv", "figures.csv")}
+
+    assert tables(a) == tables(b)
+    return [name for name in tables(a)
+            if open(os.path.join(a, name), "rb").read() != open(os.path.join(b, name), "rb").read()]
 
 
 def test_a_sweep_is_tables(program, spec, tmp_path):
@@ -74,3 +94,85 @@ def test_tradeoff_and_recommend_take_a_scene_built_here(program):
     tables = kairos.tradeoff(scene).tables
     assert any("method" in table.columns and len(table) > 3 for table in tables.values())
     assert "event-driven" in kairos.recommend(scene, 1e-3)
+
+
+def test_merging_names_what_is_missing(program, spec, tmp_path):
+    for k in (1, 3):
+        program("sweep", spec, "--shard", f"{k}/3", "--out", tmp_path / f"s{k}")
+    with pytest.raises(kairos.InputError, match="of 3 shards these are missing: 2"):
+        kairos.merge(tmp_path / "s1", tmp_path / "s3", out=tmp_path / "out")
+
+
+def test_gnu_parallel_goes_on_after_shards_were_killed(program, spec, tmp_path):
+    if not shutil.which("parallel"):
+        pytest.skip("GNU parallel is not installed")
+    script = os.path.join(SOURCE, "experiments", "clusters", "sweep-parallel")
+    command = [script, str(spec), "6", str(tmp_path / "shards")]
+    once = tmp_path / "once"  # kills the first two tries of every shard, at a random time
+    flaky = tmp_path / "flaky"
+    flaky.write_text(f"""#!/bin/sh
+echo x >> {once}
+if [ "$(wc -l < {once})" -le 6 ]; then
+  "{os.environ['KAIROS_PROGRAM']}" "$@" & child=$!
+  sleep 0.05; kill -KILL $child; wait $child; exit $?
+fi
+exec "{os.environ['KAIROS_PROGRAM']}" "$@"
+""")
+    flaky.chmod(0o755)
+    surroundings = {**os.environ, "KAIROS_PROGRAM": str(flaky)}
+    first = subprocess.run(command, env=surroundings, capture_output=True, text=True)
+    tries = 1
+    while tries < 6 and subprocess.run(command, env=surroundings, capture_output=True).returncode:
+        tries += 1
+    assert first.returncode != 0  # shards were killed
+    kairos.sweep(spec, out=tmp_path / "one")
+    kairos.merge(tmp_path / "shards", out=tmp_path / "merged")
+    assert differences(tmp_path / "one", tmp_path / "merged") == []
+
+
+def test_dask_loses_nothing_with_a_worker_killed(program, spec, tmp_path):
+    distributed = pytest.importorskip("distributed", reason="apt-get install python3-distributed")
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True,
+                                  dashboard_address=None, host="127.0.0.1",
+                                  silence_logs=logging.ERROR) as cluster, \
+            distributed.Client(cluster) as client:
+        victim = list(client.run(os.getpid).values())[0]
+        killer = threading.Timer(0.3, os.kill, (victim, signal.SIGKILL))
+        killer.start()
+        started = time.monotonic()
+        result = kairos.sweep(spec, client=client, shards=12, out=tmp_path / "dask")
+        killer.join()
+        assert time.monotonic() - started > 0.2  # it was at work
+    kairos.sweep(spec, out=tmp_path / "one")
+    assert len(result.runs) == RUNS
+    assert differences(tmp_path / "one", tmp_path / "dask") == []
+
+
+def test_a_slurm_array_runs_as_it_is(program, spec, tmp_path):
+    if not shutil.which("sbatch") or subprocess.run(["sinfo"], capture_output=True).returncode:
+        pytest.skip("no Slurm controller answers: the array script is tried without one")
+    script = os.path.join(SOURCE, "experiments", "clusters", "sweep.slurm")
+    subprocess.run(["sbatch", "--wait", "--array=1-4", f"--output={tmp_path}/%a.log", script,
+                    str(spec), str(tmp_path / "shards")], check=True, capture_output=True)
+    kairos.sweep(spec, out=tmp_path / "one")
+    kairos.merge(tmp_path / "shards", out=tmp_path / "merged")
+    assert differences(tmp_path / "one", tmp_path / "merged") == []
+
+
+def test_the_array_script_is_what_slurm_would_run(program, spec, tmp_path):
+    """The script by itself, with the variables that Slurm sets."""
+    script = os.path.join(SOURCE, "experiments", "clusters", "sweep.slurm")
+
+    def task(k, count=3, **more):
+        return subprocess.run(["bash", script, str(spec), str(tmp_path / "shards")], text=True,
+                              capture_output=True,
+                              env={**os.environ, "SLURM_ARRAY_TASK_ID": str(k),
+                                   "SLURM_ARRAY_TASK_MIN": "1", "SLURM_ARRAY_TASK_MAX": "3",
+                                   "SLURM_ARRAY_TASK_COUNT": str(count), **more})
+
+    assert [task(k).returncode for k in (1, 2)] == [0, 0]
+    assert "of how many shards?" in task(3, count=1).stderr
+    assert task(3, count=1, KAIROS_SHARDS="3").returncode == 0
+    kairos.sweep(spec, out=tmp_path / "one")
+    kairos.merge(tmp_path / "shards", out=tmp_path / "merged")
+    assert differences(tmp_path / "one", tmp_path / "merged") == []
