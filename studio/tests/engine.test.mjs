@@ -13,13 +13,13 @@ const root = resolve(dirname(fileURLToPath(import.meta.url)), "../..");
 const built = process.env.KAIROS_ENGINE ?? join(root, "build/engine");
 const thesis = "scheme=original\nintegrator=thesis-euler\ndetector=sat\nimpact=thesis";
 const tables = ["trajectory", "events", "energy"];
-let place, engine, files;
+let place, engine, files, page;
 before(async () => {
   place = await folder();
   files = await sceneFiles(join(root, "scenes"));
-  const { Engine } = await modules(place.path, "lab/wasm.ts");
+  page = await modules(place.path, "lab/wasm.ts", "data.ts", "motion.ts");
   const create = createRequire(import.meta.url)(join(built, "engine.js"));
-  engine = await Engine.load(create, await readFile(join(built, "engine.wasm")), files);
+  engine = await page.Engine.load(create, await readFile(join(built, "engine.wasm")), files);
 });
 after(() => place?.remove());
 
@@ -84,8 +84,7 @@ test("a run that takes too long ends with what there is, and says so", () => {
 });
 
 test("a run that goes on from a later moment is the rest of the first", async () => {
-  const { readRun } = await modules(place.path, "data.ts");
-  const { Motions, newState } = await modules(place.path, "motion.ts");
+  const { readRun, Motions, newState } = page;
   const at = (run, name, t) => {
     const { px, py, pz, qw, qx, qy, qz, vx, vy, vz, wx, wy, wz } = new Motions(run).at(run.bodies.findIndex((body) => body.name === name), t, newState());
     return [px, py, pz, qw, qx, qy, qz, vx, vy, vz, wx, wy, wz];

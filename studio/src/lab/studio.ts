@@ -264,7 +264,7 @@ export class Studio {
     viewer.choose(body);
     const line = bodyLines(this.editor.text).get(this.body);
     if (line === undefined) {
-      this.say("This scene is in the thesis' own format: bodies are moved in its text");
+      this.say(`${this.body} has no [[body]] of its own (it is one of [[many]], or of a .def): it is changed in the text`);
       return false;
     }
     this.takeNow();
