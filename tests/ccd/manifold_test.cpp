@@ -119,3 +119,21 @@ TEST_CASE("points turn with the world", "[manifold][invariance]") {
     CHECK(sum.norm() <= 1e-13);  // roundoff of two rotations of eight points
   }
 }
+
+TEST_CASE("boxes that lie on each other with a small tilt touch in a face, not where edges cross",
+          "[manifold]") {
+  const Placed lower{Box{{0.25, 0.25, 0.25}}, at(Vector3::Zero())};
+  int faces = 0;
+  Random random(20261122);
+  INFO("seed 20261122");
+  for (int trial = 0; trial < 200; ++trial) {
+    // About horizontal axes, by up to 2e-3, with a corner up to 1 mm deep.
+    const double angle = random.uniform(0.0, 2.0 * M_PI);
+    const Vector3 tilt = random.uniform(0.0, 2e-3) * Vector3(std::cos(angle), 0.0, std::sin(angle));
+    const Placed upper{Box{{0.25, 0.25, 0.25}}, at({1e-3, 0.4995, -2e-3}, tilt)};
+    const ContactManifold m = ask(lower, upper, 2e-3);
+    faces += m.face_of_a || m.face_of_b ? 1 : 0;
+    CHECK(m.size >= 4);
+  }
+  CHECK(faces == 200);
+}
