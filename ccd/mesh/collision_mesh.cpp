@@ -39,6 +39,8 @@ std::vector<std::uint32_t> find_parts(const MeshData& mesh) {
 
 CollisionMesh::CollisionMesh(MeshData data, Kind kind)
     : data_(std::move(data)), tree_(build_obb_tree(data_)), kind_(kind) {
+  data_.vertices.shrink_to_fit();
+  data_.triangles.shrink_to_fit();
   if (solid()) {
     (void)mass_properties(data_.vertices, data_.triangles);  // refuses what has no inside
     part_vertices_ = find_parts(data_);

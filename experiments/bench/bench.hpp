@@ -36,5 +36,8 @@ void bench_stepping(int rounds);
 void bench_queries(std::size_t pairs, int rounds);
 /// Vertex and face, edge and edge on straight lines: mean, median and the share of every stage.
 void bench_vfee(std::size_t queries, int rounds);
+/// Meshes at rest: two tori in many placements, touching, distance, tolerance; a tree's time and
+/// size.
+void bench_meshes(int rounds);
 
 }  // namespace kairos::experiments

@@ -63,6 +63,8 @@ void add_commands(CLI::App& app) {
   add_list_command(app);
   add_toi_command(app);
   add_vfee_command(app);
+  add_collide_command(app);
+  add_distance_command(app);
   add_sweep_command(app);
   add_experiment_command(app);
   add_reproduce_command(app);

@@ -32,6 +32,10 @@ struct BenchCommand {
       bench_vfee(pairs, rounds);
       return;
     }
+    if (name == "meshes") {
+      bench_meshes(rounds);
+      return;
+    }
     if (name != "ccd") {
       bench_stepping(rounds);
     }
@@ -48,11 +52,11 @@ void add_bench_command(CLI::App& app) {
   CLI::App* bench = app.add_subcommand(
       "bench", "Time it: ratios within one run, interleaved, the least of several rounds");
   bench
-      ->add_option(
-          "name", options->name,
-          "bounce, ccd or vfee: times; without it the first two; accuracy: answers against a "
-          "reference")
-      ->check(CLI::IsMember({"bounce", "ccd", "vfee", "accuracy"}));
+      ->add_option("name", options->name,
+                   "bounce, ccd, vfee or meshes: times; without it the first two; accuracy: "
+                   "answers against a "
+                   "reference")
+      ->check(CLI::IsMember({"bounce", "ccd", "vfee", "meshes", "accuracy"}));
   bench->add_option("--rounds", options->rounds, "how often each is timed")
       ->check(whole_number(1, 1000))
       ->capture_default_str();

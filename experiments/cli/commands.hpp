@@ -14,6 +14,8 @@ void add_explain_command(CLI::App& app);
 void add_list_command(CLI::App& app);
 void add_toi_command(CLI::App& app);
 void add_vfee_command(CLI::App& app);
+void add_collide_command(CLI::App& app);
+void add_distance_command(CLI::App& app);
 void add_sweep_command(CLI::App& app);
 void add_experiment_command(CLI::App& app);
 void add_reproduce_command(CLI::App& app);

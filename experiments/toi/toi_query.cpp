@@ -1,12 +1,10 @@
 #include "experiments/toi/toi_query.hpp"
 
-#include "core/error.hpp"
 #include "core/reading/csv.hpp"
 #include "simulation/query_limits.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -53,18 +51,7 @@ double read_number(std::string_view field, std::string_view column,
 }  // namespace
 
 ToiQueryFormat::ToiQueryFormat(std::string_view header, std::int64_t line, const std::string& file)
-    : file_(file), line_(static_cast<int>(line)) {
-  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-  if (header.starts_with(byte_order_mark)) {
-    header.remove_prefix(byte_order_mark.size());
-  }
-  std::vector<std::string_view> fields;
-  if (!split_fields(header, fields)) {
-    throw InputError(file_, line_, "", "the header has a quote that does not end");
-  }
-  for (const std::string_view field : fields) {
-    columns_.emplace_back(unquoted(field));
-  }
+    : columns_(header, line, file) {
   id_ = need("id");
   a_ = body_columns("a_");
   b_ = body_columns("b_");
@@ -74,7 +61,7 @@ ToiQueryFormat::ToiQueryFormat(std::string_view header, std::int64_t line, const
 ToiQueryFormat::BodyColumns ToiQueryFormat::body_columns(const std::string& prefix) const {
   BodyColumns columns;
   columns.shape_name = prefix + "shape";
-  columns.shape = find(columns.shape_name);
+  columns.shape = columns_.find(columns.shape_name);
   for (std::size_t i = 0; i < numbers_per_body; ++i) {
     columns.name[i] = prefix + std::string(number_names[i]);
     columns.number[i] = need(columns.name[i]);
@@ -82,25 +69,10 @@ ToiQueryFormat::BodyColumns ToiQueryFormat::body_columns(const std::string& pref
   return columns;
 }
 
-std::size_t ToiQueryFormat::find(const std::string& name) const {
-  const auto first = std::find(columns_.begin(), columns_.end(), name);
-  if (first == columns_.end()) {
-    return absent;
-  }
-  if (std::find(first + 1, columns_.end(), name) != columns_.end()) {
-    throw InputError(file_, line_, name, "is the name of two columns; allowed: one");
-  }
-  return static_cast<std::size_t>(first - columns_.begin());
-}
-
 std::size_t ToiQueryFormat::need(const std::string& name) const {
-  const std::size_t column = find(name);
-  if (column == absent) {
-    throw InputError(file_, line_, name,
-                     "is missing from the header; needed: id, then hx hy hz px py pz qw qx qy qz "
-                     "vx vy vz ax ay az wx wy wz with a_ and with b_ before each, and duration");
-  }
-  return column;
+  return columns_.need(name,
+                       "id, then hx hy hz px py pz qw qx qy qz vx vy vz ax ay az wx wy wz with a_ "
+                       "and with b_ before each, and duration");
 }
 
 /// Reads the columns of one body of one row.
@@ -110,8 +82,9 @@ class ToiQueryFormat::Body {
       : columns_(columns), fields_(fields) {}
 
   [[nodiscard]] Shape shape() const {
-    const std::string_view kind =
-        columns_.shape == absent ? std::string_view("box") : unquoted(fields_[columns_.shape]);
+    const std::string_view kind = columns_.shape == CsvColumns::absent
+                                      ? std::string_view("box")
+                                      : unquoted(fields_[columns_.shape]);
     if (kind == "box" || kind.empty()) {
       return Box{{extent(h), extent(h + 1), extent(h + 2)}};
     }
@@ -158,19 +131,12 @@ class ToiQueryFormat::Body {
 };
 
 std::string_view ToiQueryFormat::id(std::string_view row, Scratch& scratch) const {
-  const bool whole = split_fields(row, scratch.fields);
-  return whole && id_ < scratch.fields.size() ? scratch.fields[id_] : std::string_view();
+  return CsvColumns::field(row, id_, scratch.fields);
 }
 
 ToiQuery ToiQueryFormat::read(std::string_view row, Scratch& scratch) const {
   std::vector<std::string_view>& fields = scratch.fields;
-  if (!split_fields(row, fields)) {
-    throw BadField{"", "has a quote that does not end"};
-  }
-  if (fields.size() != columns_.size()) {
-    throw BadField{"", fmt::format("has {} fields; the header names {} columns", fields.size(),
-                                   columns_.size())};
-  }
+  columns_.split(row, fields);
   ToiQuery query;
   query.id = fields[id_];
   query.duration = read_number(fields[duration_], "duration", longest_duration_asked);

@@ -2,7 +2,7 @@
 
 #include "core/motion.hpp"
 #include "core/shape.hpp"
-#include "experiments/toi/row_stream.hpp"
+#include "experiments/toi/csv_columns.hpp"
 
 #include <array>
 #include <cstdint>
@@ -38,24 +38,20 @@ class ToiQueryFormat {
 
  private:
   static constexpr std::size_t numbers_per_body = 19;
-  static constexpr std::size_t absent = static_cast<std::size_t>(-1);
 
   /// Columns of one body: its numbers in the order of `number_names`, and the optional shape.
   struct BodyColumns {
     std::array<std::size_t, numbers_per_body> number{};
     std::array<std::string, numbers_per_body> name;
-    std::size_t shape = absent;
+    std::size_t shape = CsvColumns::absent;
     std::string shape_name;
   };
 
   class Body;
   [[nodiscard]] BodyColumns body_columns(const std::string& prefix) const;
-  [[nodiscard]] std::size_t find(const std::string& name) const;
   [[nodiscard]] std::size_t need(const std::string& name) const;
 
-  std::string file_;
-  int line_;  ///< of the header
-  std::vector<std::string> columns_;
+  CsvColumns columns_;
   BodyColumns a_, b_;
   std::size_t id_ = 0;
   std::size_t duration_ = 0;

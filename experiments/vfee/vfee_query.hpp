@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ccd/linear/linear_impact.hpp"
-#include "experiments/toi/row_stream.hpp"
+#include "experiments/toi/csv_columns.hpp"
 
 #include <array>
 #include <cstdint>
@@ -33,12 +33,7 @@ class VfeeFormat {
                                     std::vector<std::string_view>& fields) const;
 
  private:
-  [[nodiscard]] std::size_t find(const std::string& name) const;
-  [[nodiscard]] std::size_t need(const std::string& name) const;
-
-  std::string file_;
-  int line_;  ///< of the header
-  std::vector<std::string> columns_;
+  CsvColumns columns_;
   std::size_t id_, kind_, separation_;
   std::array<std::size_t, 24> numbers_{};
 };
