@@ -98,8 +98,9 @@ std::vector<Check> kinds_of_pairs(Size) {
   const Model model(parse_scene(text, "kinds.toml"));
   std::set<std::pair<std::string_view, std::string_view>> met;
   for (const auto& [a, b] : model.pairs()) {
-    const auto names = std::minmax(model.entity(a).kind(), model.entity(b).kind());
-    met.insert(names);
+    const std::string_view kind_a = model.entity(a).kind();
+    const std::string_view kind_b = model.entity(b).kind();
+    met.insert(std::minmax(kind_a, kind_b));
   }
   return {{"kinds of pairs of 3 kinds of objects (3! = 6)", "", 6.0, pairs(3), Agreement::equal,
            0.0, "exact", Evidence::arithmetic},
