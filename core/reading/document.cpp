@@ -176,8 +176,7 @@ std::string read_text_file(const std::string& path, std::size_t longest) {
     file.read(block.data(), static_cast<std::streamsize>(block.size()));
     const auto count = static_cast<std::size_t>(file.gcount());
     if (text.size() + count > longest) {
-      throw InputError(path, 0, "",
-                       fmt::format("is longer than {} bytes, or has no end", longest));
+      throw InputError(path, 0, "", fmt::format("is longer than {} bytes, or has no end", longest));
     }
     text.append(block.data(), count);
   }

@@ -10,8 +10,9 @@ inline namespace core {
 /// A key that a scene file may hold. The one list that the reader checks against, and that
 /// scenes/README.md documents (a test compares them).
 struct SceneKey {
-  std::string_view table;  ///< "" (top level), "frame", "body", "body.drive", "many", "many.region", "force" (any kind),
-                           ///< "force.spring" (that kind), "exact"
+  std::string_view
+      table;  ///< "" (top level), "frame", "body", "body.drive", "many", "many.region", "force"
+              ///< (any kind), "force.spring" (that kind), "exact"
   std::string_view key;
 };
 
