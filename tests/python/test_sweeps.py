@@ -108,13 +108,14 @@ def test_gnu_parallel_goes_on_after_shards_were_killed(program, spec, tmp_path):
         pytest.skip("GNU parallel is not installed")
     script = os.path.join(SOURCE, "experiments", "clusters", "sweep-parallel")
     command = [script, str(spec), "6", str(tmp_path / "shards")]
-    once = tmp_path / "once"  # kills the first two tries of every shard, at a random time
+    once = tmp_path / "once"  # a line a try; the first six are killed, 1 to 6 ms after their start
     flaky = tmp_path / "flaky"
     flaky.write_text(f"""#!/bin/sh
 echo x >> {once}
-if [ "$(wc -l < {once})" -le 6 ]; then
+tries=$(wc -l < {once})
+if [ "$tries" -le 6 ]; then
   "{os.environ['KAIROS_PROGRAM']}" "$@" & child=$!
-  sleep 0.05; kill -KILL $child; wait $child; exit $?
+  sleep "0.00$tries"; kill -KILL $child; wait $child; exit $?
 fi
 exec "{os.environ['KAIROS_PROGRAM']}" "$@"
 """)
