@@ -9,14 +9,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 
 namespace kairos {
 inline namespace core {
 namespace {
 
-/// A text of 1e7 triangles is that long.
-constexpr std::size_t longest_mesh = std::size_t{1} << 32;
+/// A text of 1e7 triangles is that long; where memory ends before, as long as it is.
+constexpr auto longest_mesh = static_cast<std::size_t>(
+    std::min<std::uint64_t>(std::uint64_t{1} << 32, std::numeric_limits<std::size_t>::max()));
 
 void parse_off_into(std::string_view text, const std::string& path, MeshBuilder& builder) {
   struct Build : OffSink {

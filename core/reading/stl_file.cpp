@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <bit>
 #include <cstdint>
+#include <cstring>
 
 namespace kairos {
 inline namespace core {
@@ -28,7 +28,10 @@ std::uint32_t word_at(std::string_view bytes, std::size_t at) {
 Vector3 vector_at(std::string_view bytes, std::size_t at) {
   Vector3 v;
   for (std::size_t i = 0; i < 3; ++i) {
-    v[static_cast<Eigen::Index>(i)] = std::bit_cast<float>(word_at(bytes, at + 4 * i));
+    const std::uint32_t word = word_at(bytes, at + 4 * i);
+    float x = 0.0F;  // std::bit_cast is not in the oldest libc++ that is built with
+    std::memcpy(&x, &word, sizeof x);
+    v[static_cast<Eigen::Index>(i)] = x;
   }
   return v;
 }
