@@ -10,7 +10,6 @@
 namespace kairos::ccd {
 namespace {
 
-constexpr double unit_tolerance = 1e-6;     // physical: what a person's rounding may cost
 constexpr double normal_tolerance = 1e-14;  // roundings of who made it unit, and of the square
 constexpr double time_tolerance = 1e-12;
 constexpr double sum_rounding = 1e-12;  // of a sum that others make in another order

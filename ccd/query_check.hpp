@@ -8,6 +8,8 @@ namespace kairos::ccd {
 /// of what separates them stay within the range of a double.
 inline constexpr double least_extent = 1e-70;
 inline constexpr double greatest_size = 1e70;
+/// How far from 1 the length of an orientation may be: what a person's rounding may cost.
+inline constexpr double unit_tolerance = 1e-6;
 
 /// What a detector can answer, checked before it does: an answer to nonsense would look like any
 /// other. All throw `std::invalid_argument` with a message that names what is wrong and what is

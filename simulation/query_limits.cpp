@@ -15,11 +15,10 @@ std::string why_no_extent(double metres) {
 }
 
 std::string why_not_unit(double length) {
-  constexpr double unit_tolerance = 1e-6;  // physical: what a person's rounding may cost
-  return std::abs(length - 1.0) <= unit_tolerance
+  return std::abs(length - 1.0) <= ccd::unit_tolerance
              ? std::string()
              : fmt::format("the quaternion has length {}; allowed: 1 within {}", length,
-                           unit_tolerance);
+                           ccd::unit_tolerance);
 }
 
 std::string why_too_far(const Pose& pose, const Twist& twist, const Vector3& acceleration,

@@ -3,11 +3,11 @@
 #include "core/mass_properties.hpp"
 
 #include "core/error.hpp"
+#include "core/mesh_shapes.hpp"
 #include "core/shape.hpp"
 #include "tests/catch.hpp"
 
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <vector>
 
@@ -15,49 +15,14 @@ using namespace kairos;
 
 namespace {
 
-struct Mesh {
-  std::vector<Vector3> vertices;
-  std::vector<Triangle> triangles;
-  [[nodiscard]] MassProperties solid() const { return mass_properties(vertices, triangles); }
-};
-
-/// A box with corner k at (+-a, +-b, +-c) by the bits of k.
-Mesh box_mesh(const Vector3& half) {
-  Mesh mesh;
-  for (int k = 0; k < 8; ++k) {
-    mesh.vertices.emplace_back((k & 1) != 0 ? half.x() : -half.x(),
-                               (k & 2) != 0 ? half.y() : -half.y(),
-                               (k & 4) != 0 ? half.z() : -half.z());
-  }
-  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return mesh;
-}
-
-/// Each triangle becomes four, their corners on the unit sphere.
-Mesh finer(const Mesh& mesh) {
-  Mesh result{mesh.vertices, {}};
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
-  const auto middle = [&](std::uint32_t i, std::uint32_t j) {
-    const auto [at, is_new] =
-        middles.try_emplace(std::minmax(i, j), static_cast<std::uint32_t>(result.vertices.size()));
-    if (is_new) {
-      result.vertices.push_back((mesh.vertices[i] + mesh.vertices[j]).normalized());
-    }
-    return at->second;
-  };
-  for (const Triangle& t : mesh.triangles) {
-    const std::uint32_t a = middle(t[0], t[1]), b = middle(t[1], t[2]), c = middle(t[2], t[0]);
-    result.triangles.insert(result.triangles.end(),
-                            {{t[0], a, c}, {t[1], b, a}, {t[2], c, b}, {a, b, c}});
-  }
-  return result;
+MassProperties solid_of(const MeshData& mesh) {
+  return mass_properties(mesh.vertices, mesh.triangles);
 }
 
 /// Reasons are compared by what they must say.
-void check_refused(const Mesh& mesh, const std::string& part) {
+void check_refused(const MeshData& mesh, const std::string& part) {
   try {
-    (void)mesh.solid();
+    (void)solid_of(mesh);
   } catch (const InputError& error) {
     INFO(error.what());
     CHECK(error.reason().find(part) != std::string::npos);
@@ -70,7 +35,7 @@ void check_refused(const Mesh& mesh, const std::string& part) {
 
 TEST_CASE("mass properties: a box as a mesh has the inertia of a box", "[mesh]") {
   const Vector3 half(0.3, 0.5, 0.2);
-  const MassProperties solid = box_mesh(half).solid();
+  const MassProperties solid = solid_of(box_mesh(half));
   const double mass = 8.0 * half.prod();
   const Vector3 moments = solid_inertia(Box{half}, mass);
   // Roundoff of a dozen tetrahedra.
@@ -82,16 +47,16 @@ TEST_CASE("mass properties: a box as a mesh has the inertia of a box", "[mesh]")
 }
 
 TEST_CASE("mass properties: what is moved and turned is moved and turned", "[mesh]") {
-  Mesh mesh = box_mesh({0.3, 0.5, 0.2});
+  MeshData mesh = box_mesh({0.3, 0.5, 0.2});
   mesh.vertices[7] = {0.6, 0.9, 0.1};  // no symmetry is left
-  const MassProperties before = mesh.solid();
+  const MassProperties before = solid_of(mesh);
   const Quaternion turn = Quaternion(0.4, -0.2, 0.7, 0.1).normalized();
   const Matrix3 R = turn.toRotationMatrix();
   const Vector3 shift(1e3, -2e3, 5e2);
   for (Vector3& vertex : mesh.vertices) {
     vertex = turn * vertex + shift;
   }
-  const MassProperties after = mesh.solid();
+  const MassProperties after = solid_of(mesh);
   // Coordinates of 2e3 beside sizes near 1: their roundoff, 5e-13, and no more.
   CHECK(after.volume == Approx(before.volume).epsilon(1e-11));
   CHECK((after.centre - (turn * before.centre + shift)).norm() <= 1e-11);
@@ -108,51 +73,48 @@ TEST_CASE("mass properties: a tetrahedron by its formula, a solid with a hole by
           "[mesh]") {
   // The corner of a cube, edge a: volume a^3/6, centre a/4, Ixx about the centre a^5/80 (Tonon
   // 2004).
-  const Mesh corner{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}},
-                    {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
-  const MassProperties solid = corner.solid();
+  const MeshData corner{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}},
+                        {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+  const MassProperties solid = solid_of(corner);
   CHECK(solid.volume == Approx(8.0 / 6.0).epsilon(1e-15));
   CHECK((solid.centre - Vector3(0.5, 0.5, 0.5)).norm() <= 1e-15);
   CHECK(solid.inertia(0, 0) == Approx(32.0 / 80.0).epsilon(1e-14));
   CHECK(solid.inertia(0, 1) == Approx(32.0 / 480.0).epsilon(1e-14));
 
-  Mesh hollow = box_mesh({1.0, 1.0, 1.0});
-  const Mesh hole = box_mesh({0.5, 0.4, 0.3});
+  MeshData hollow = box_mesh({1.0, 1.0, 1.0});
+  const MeshData hole = box_mesh({0.5, 0.4, 0.3});
   for (const Vector3& vertex : hole.vertices) {
     hollow.vertices.push_back(vertex);
   }
   for (const Triangle& t : hole.triangles) {
     hollow.triangles.push_back({t[0] + 8, t[2] + 8, t[1] + 8});  // its outside is the hole
   }
-  const MassProperties rest = hollow.solid(), outer = box_mesh({1, 1, 1}).solid(),
-                       inner = hole.solid();
+  const MassProperties rest = solid_of(hollow), outer = solid_of(box_mesh({1, 1, 1})),
+                       inner = solid_of(hole);
   CHECK(rest.volume == Approx(outer.volume - inner.volume).epsilon(1e-14));
   CHECK((rest.inertia - (outer.inertia - inner.inertia)).norm() <= 1e-14);
 }
 
 TEST_CASE("mass properties: finer and finer meshes of a sphere become one, as h^2", "[mesh]") {
-  Mesh mesh{
-      {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
-      {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
-  const double volume = 4.0 / 3.0 * std::numbers::pi;
+  const double radius = icosphere_mesh(0).vertices.front().norm();
+  const double volume = 4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3);
   double volume_error = 0.0, inertia_error = 0.0;
   for (int level = 0; level < 6; ++level) {
-    const MassProperties solid = mesh.solid();
+    const MassProperties solid = solid_of(icosphere_mesh(level));
     const double e = std::abs(solid.volume - volume);
-    const double i = (solid.moments - Vector3::Constant(0.4 * volume)).norm();
+    const double i = (solid.moments - Vector3::Constant(0.4 * volume * radius * radius)).norm();
     if (level > 3) {
       CHECK(std::log2(volume_error / e) == Approx(2.0).margin(0.1));
       CHECK(std::log2(inertia_error / i) == Approx(2.0).margin(0.1));
     }
     volume_error = e;
     inertia_error = i;
-    mesh = finer(mesh);
   }
 }
 
 TEST_CASE("mass properties: what has no inside is refused with the reason", "[mesh]") {
-  const Mesh box = box_mesh({1, 1, 1});
-  Mesh bad = box;
+  const MeshData box = box_mesh({1, 1, 1});
+  MeshData bad = box;
   bad.triangles.pop_back();
   check_refused(bad, "not closed");
   bad = box;

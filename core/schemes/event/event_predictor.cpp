@@ -141,12 +141,15 @@ void EventPredictor::predict_pair(BodyIndex i, BodyIndex j, Instant t) {
   }
 }
 
-TimeOfImpact EventPredictor::time_of_impact(BodyIndex a, BodyIndex b, Instant t, double duration) {
-  const TimeOfImpact toi = run_.detector.time_of_impact(motions_.moving(a), motions_.moving(b),
-                                                        {t, duration}, run_.options.toi_tolerance);
+TimeOfImpact EventPredictor::counted(const TimeOfImpact& toi) {
   ++run_.cost.toi_queries;
   run_.cost.toi_evaluations += toi.evaluations;
   return toi;
+}
+
+TimeOfImpact EventPredictor::time_of_impact(BodyIndex a, BodyIndex b, Instant t, double duration) {
+  return counted(run_.detector.time_of_impact(motions_.moving(a), motions_.moving(b), {t, duration},
+                                              run_.options.toi_tolerance));
 }
 
 double EventPredictor::touching_gap(BodyIndex a, BodyIndex b) const {
@@ -276,11 +279,8 @@ void EventPredictor::predict_parting(BodyIndex a, BodyIndex b, Instant t, double
 
 TimeOfImpact EventPredictor::time_of_separation(BodyIndex a, BodyIndex b, Instant t,
                                                 double duration) {
-  const TimeOfImpact toi = run_.detector.time_of_separation(
-      motions_.moving(a), motions_.moving(b), {t, duration}, run_.options.toi_tolerance);
-  ++run_.cost.toi_queries;
-  run_.cost.toi_evaluations += toi.evaluations;
-  return toi;
+  return counted(run_.detector.time_of_separation(motions_.moving(a), motions_.moving(b),
+                                                  {t, duration}, run_.options.toi_tolerance));
 }
 
 void EventPredictor::Watched::persist(Archive& archive) {

@@ -52,6 +52,8 @@ class EventPredictor {
   void look_nearer(BodyIndex a, BodyIndex b, Instant t, double duration, TimeOfImpact toi);
   void predict_parting(BodyIndex a, BodyIndex b, Instant t, double duration, Due due);
   void leave_overlap(BodyIndex a, BodyIndex b, Instant t, double duration);
+  /// What a query cost is told.
+  TimeOfImpact counted(const TimeOfImpact& toi);
   TimeOfImpact without_errors(BodyIndex a, BodyIndex b, Instant t, double duration);
   [[nodiscard]] TimeOfImpact time_of_separation(BodyIndex a, BodyIndex b, Instant t,
                                                 double duration);

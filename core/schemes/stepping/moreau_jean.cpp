@@ -59,17 +59,12 @@ class MoreauJean final : public Scheme {
     const TimeSteppingOptions& stepping = options.stepping;
     StepWorld world(model, method, options, recorder, std::max<std::int64_t>(stepping.substeps, 1),
                     Corrects::no);
-    while (world.draw()) {
-      for (std::int64_t k = 0; k < world.steps(); ++k) {
-        world.begin_step();
-        world.kick(stepping.theta);
-        world.find_contacts(world.poses_ahead((1.0 - stepping.theta) * world.h()));
-        solve(world, stepping);
-        world.move(stepping.theta);
-        world.end_step();
-      }
-    }
-    return std::move(world).result();
+    return run_steps(world, [&] {
+      world.kick(stepping.theta);
+      world.find_contacts(world.poses_ahead((1.0 - stepping.theta) * world.h()));
+      solve(world, stepping);
+      world.move(stepping.theta);
+    });
   }
 };
 

@@ -51,21 +51,16 @@ class Penalty final : public Scheme {
     const TimeSteppingOptions& stepping = options.stepping;
     StepWorld world(model, method, options, recorder,
                     stepping.substeps > 0 ? stepping.substeps : 100, Corrects::no);
-    while (world.draw()) {
-      for (std::int64_t k = 0; k < world.steps(); ++k) {
-        world.begin_step();
-        world.kick();
-        world.find_contacts(world.poses_ahead(0.0));
-        for (StepContact& c : world.contacts()) {
-          c.impulse = world.h() * contact_force(c, stepping);
-        }
-        world.count_solves(world.contacts().size());
-        world.sum_impulses();
-        world.move(1.0);
-        world.end_step();
+    return run_steps(world, [&] {
+      world.kick();
+      world.find_contacts(world.poses_ahead(0.0));
+      for (StepContact& c : world.contacts()) {
+        c.impulse = world.h() * contact_force(c, stepping);
       }
-    }
-    return std::move(world).result();
+      world.count_solves(world.contacts().size());
+      world.sum_impulses();
+      world.move(1.0);
+    });
   }
 };
 

@@ -69,17 +69,12 @@ class Pgs final : public Scheme {
     const TimeSteppingOptions& stepping = options.stepping;
     StepWorld world(model, method, options, recorder, std::max<std::int64_t>(stepping.substeps, 1),
                     Corrects::yes);
-    while (world.draw()) {
-      for (std::int64_t k = 0; k < world.steps(); ++k) {
-        world.begin_step();
-        world.kick();
-        world.find_contacts(world.poses_ahead(0.0), stepping.slop);
-        solve(world, stepping);
-        world.move(1.0);
-        world.end_step();
-      }
-    }
-    return std::move(world).result();
+    return run_steps(world, [&] {
+      world.kick();
+      world.find_contacts(world.poses_ahead(0.0), stepping.slop);
+      solve(world, stepping);
+      world.move(1.0);
+    });
   }
 };
 

@@ -132,6 +132,20 @@ class StepWorld {
 /// The rotation vector that turns q0 to q1, the shorter way round, rad, world frame.
 [[nodiscard]] Vector3 turn_between(const Quaternion& q0, const Quaternion& q1);
 
+/// The loop of all of these schemes: frames, and in each so many steps. `step()` is what lies
+/// between the beginning and the end of one.
+template <typename Step>
+RunResult run_steps(StepWorld& world, const Step& step) {
+  while (world.draw()) {
+    for (std::int64_t k = 0; k < world.steps(); ++k) {
+      world.begin_step();
+      step();
+      world.end_step();
+    }
+  }
+  return std::move(world).result();
+}
+
 /// Why a scheme that steps over contacts cannot run this; empty if it can.
 [[nodiscard]] std::string stepping_refusal(const Model& model, const Method& method);
 

@@ -201,26 +201,21 @@ class Xpbd final : public Scheme {
                     stepping.substeps > 0 ? stepping.substeps : 20, Corrects::yes);
     Solver solver(world, options.stepping);
     std::vector<Pose> poses;
-    while (world.draw()) {
-      for (std::int64_t k = 0; k < world.steps(); ++k) {
-        world.begin_step();
-        world.kick();
-        world.move(1.0);
-        poses.clear();
-        for (const BodyState& body : world.bodies()) {
-          poses.push_back(body.pose);
-        }
-        world.find_contacts(poses);
-        solver.prepare();
-        for (std::int64_t i = 0; i < std::max<std::int64_t>(stepping.iterations, 1); ++i) {
-          solver.solve_positions();
-        }
-        solver.derive_velocities();
-        solver.solve_velocities();
-        world.end_step();
+    return run_steps(world, [&] {
+      world.kick();
+      world.move(1.0);
+      poses.clear();
+      for (const BodyState& body : world.bodies()) {
+        poses.push_back(body.pose);
       }
-    }
-    return std::move(world).result();
+      world.find_contacts(poses);
+      solver.prepare();
+      for (std::int64_t i = 0; i < std::max<std::int64_t>(stepping.iterations, 1); ++i) {
+        solver.solve_positions();
+      }
+      solver.derive_velocities();
+      solver.solve_velocities();
+    });
   }
 };
 

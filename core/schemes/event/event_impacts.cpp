@@ -1,0 +1,309 @@
+// What `EventContacts` does when bodies strike each other: two, or a group that hangs together.
+#include "core/contacts/group_law.hpp"
+#include "core/impact_check.hpp"
+#include "core/schemes/event/event_contacts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+/// An impact among bodies in touch is handed on so often at most, for each of them.
+constexpr std::size_t most_rounds = 1000;
+
+}  // namespace
+
+void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double patience, bool decided) {
+  for (const BodyIndex i : {a, b}) {
+    if (run_.model.is_free(i)) {
+      motions_.book(i, t);
+    }
+    if (run_.model.mobility(i) != Mobility::fixed) {
+      motions_.bring(i, t);
+    }
+  }
+  Event event{.time = t, .kind = EventKind::impact, .a = a, .b = b};
+  event.contact = contact_at(a, b, t, patience);
+  const double approach = normal_velocity(event.contact, motions_.now(a), motions_.now(b));
+  const std::array<BodyIndex, 2> pair{a, b};
+  if (!decided && approach >= 0.0 && patience > 0.0) {
+    if (!could_be_supported(a, b, t) && settle(pair, t, {.pressed = BodyPair{a, b}})) {
+      return;
+    }
+    return look_again(a, b, t, patience);
+  }
+  if (approach >= 0.0 && run_.law.info().needs_contact) {
+    return touch(a, b, event.contact, t);
+  }
+  if (run_.detector.info().proves && event.contact.gap > predictor_.touching_gap(a, b)) {
+    return run_.stop(t,
+                     fmt::format("undecided: the detector '{}' tells {} to touch, which are {} "
+                                 "m apart; allowed: a larger --tolerance, or another detector",
+                                 run_.detector.info().name, run_.names(a, b), event.contact.gap));
+  }
+  if (strike_group({a, b}, std::max(-approach, 0.0), t)) {
+    return;
+  }
+  std::vector<BodyIndex> group;
+  if (modes_.holds(a) || modes_.holds(b)) {
+    group = modes_.group(pair);
+    modes_.bring_group(group, t);
+  }
+  strike(event);
+  if (still_approaching(event, approach, t)) {
+    return;
+  }
+  if (!group.empty()) {
+    return hand_on(event, std::max(-approach, 0.0), std::move(group), t);
+  }
+  if (lands(a, b, event.contact, t)) {
+    return;
+  }
+  using Kind = EventAccumulation::Finding::Kind;
+  const auto finding = accumulation_.after_impact(a, b, std::max(-approach, 0.0), t);
+  if (finding.kind == Kind::none) {
+    return relaunch(a, b, t);
+  }
+  if (finding.kind != Kind::squeezed) {
+    const bool unite = finding.kind != Kind::rests;
+    if (settle(pair, t,
+               {.unloaded = unite,
+                .unite = unite,
+                .remaining = finding.remaining,
+                .pairs = finding.pairs})) {
+      return;
+    }
+    if (finding.kind == Kind::collapse) {
+      return relaunch(a, b, t);  // not over yet
+    }
+  }
+  depart(a, b, t);  // what the last frame shows, and the ledger has booked
+  run_.stop(t, finding.kind == Kind::squeezed ? finding.reason
+                                              : fmt::format("{}; {}", finding.reason, unkept()));
+}
+
+/// The impact law acts, and the ledger knows.
+void EventContacts::strike(Event& event) {
+  Vector3 unused_a = Vector3::Zero();  // solids that push (none does) would need fields
+  Vector3 unused_b = Vector3::Zero();
+  const ImpactEnergy energy =
+      run_.exchange(event, motions_.now(event.a), motions_.now(event.b), unused_a, unused_b);
+  assert(!run_.law.info().needs_contact ||
+         broken_restitution(event, event.contact.restitution).empty());
+  run_.ledger.add(EnergyLine::restitution_loss, energy.restitution_loss);
+  run_.ledger.add(EnergyLine::driven_work, energy.driven_work);
+  run_.ledger.add(EnergyLine::conveyor_and_hand, energy.conveyor_and_hand);
+}
+
+/// After a law that does not part them nothing can go on.
+bool EventContacts::still_approaching(const Event& event, double approach, Instant t) {
+  const auto [a, b] = std::pair{event.a, event.b};
+  const double rebound = normal_velocity(event.contact, event.after_a, event.after_b);
+  const double scale =
+      std::abs(approach) + event.after_a.twist.linear.norm() + event.after_b.twist.linear.norm();
+  if (!(rebound < -16.0 * epsilon * scale)) {  // roundoff of a product and a few sums
+    return false;
+  }
+  depart(a, b, t);
+  run_.stop(t, fmt::format("still approaching: the impact law '{}' leaves {} approaching each "
+                           "other at {} m/s",
+                           run_.law.info().name, run_.names(a, b), -rebound));
+  return true;
+}
+
+/// What moves by less than roundoff of the fastest does not move.
+void EventContacts::leave_at_rest(const EventModes::GroupImpact& impact,
+                                  std::vector<Twist>& v) const {
+  double fastest = 0.0;
+  for (const Twist& before : impact.velocities) {
+    fastest = std::max(fastest, before.linear.norm());
+  }
+  const double least = 64.0 * epsilon * fastest;
+  for (std::size_t k = 0; k < v.size(); ++k) {
+    if (!run_.model.is_free(impact.bodies[k])) {
+      continue;
+    }
+    const double radius = bounding_radius(run_.model.shape(impact.bodies[k]));
+    for (int axis = 0; axis < 3; ++axis) {
+      double& linear = v[k].linear[axis];
+      double& angular = v[k].angular[axis];
+      linear = std::abs(linear) <= least ? 0.0 : linear;
+      angular = std::abs(angular) * radius <= least ? 0.0 : angular;
+    }
+  }
+}
+
+/// A law that knows groups strikes all of them at once; false where there is no group, or the law
+/// knows none.
+bool EventContacts::strike_group(const BodyPair& pair, double approach, Instant t) {
+  const auto* law = dynamic_cast<const GroupLaw*>(&run_.law);
+  const bool held = modes_.holds(pair.first) || modes_.holds(pair.second);
+  if (law == nullptr || !(held || law->takes_what_touches())) {
+    return false;
+  }
+  EventModes::GroupImpact impact = modes_.impact_group(pair, t, law->takes_what_touches());
+  if (!impact.refusal.empty() || impact.pairs.size() < (held ? 1U : 2U)) {
+    return false;
+  }
+  std::vector<Twist> velocities = impact.velocities;
+  const Eigen::VectorXd impulses = law->strike(impact.system, impact.restitution, velocities);
+  if (impulses.size() == 0) {
+    return false;
+  }
+  leave_at_rest(impact, velocities);
+  std::vector<BodyState> before;
+  std::vector<BodyIndex> bodies;
+  for (std::size_t k = 0; k < impact.bodies.size(); ++k) {
+    const BodyIndex i = impact.bodies[k];
+    if (run_.model.is_free(i)) {
+      motions_.book(i, t);
+      motions_.bring(i, t);
+      bodies.push_back(i);
+    } else if (run_.model.mobility(i) == Mobility::driven) {
+      motions_.bring(i, t);
+    }
+    before.push_back(motions_.now(i));
+    if (run_.model.is_free(i)) {
+      motions_.now(i).twist = velocities[k];
+      run_.account.struck(i, before.back(), motions_.now(i));
+    }
+  }
+  // p (u- + u+) / 2 of each row is what it did to the energy, but for the work of what is driven.
+  for (std::size_t r = 0; r < impact.system.rows.size(); ++r) {
+    const ContactRow& row = impact.system.rows[r];
+    const double p = impulses[static_cast<Eigen::Index>(r)];
+    if (p == 0.0) {
+      continue;
+    }
+    const double u = impact.system.rate(row, impact.velocities);
+    run_.ledger.add(EnergyLine::restitution_loss,
+                    0.5 * p * (u + impact.system.rate(row, velocities)));
+    for (const std::size_t k : {row.a, row.b}) {
+      if (run_.model.mobility(impact.bodies[k]) == Mobility::driven) {
+        const Twist& v = impact.velocities[k];
+        const Vector3& arm = k == row.a ? row.arm_a : row.arm_b;
+        run_.ledger.add(EnergyLine::driven_work,
+                        (k == row.a ? p : -p) * row.direction.dot(v.linear + v.angular.cross(arm)));
+      }
+    }
+  }
+  tell_group(impact, impulses, before, pair, t);
+  go_on_from(bodies, pair, approach, t);
+  return true;
+}
+
+/// An impact of each pair that took an impulse, that which began it first; its contact is where
+/// their impulses act together.
+void EventContacts::tell_group(const EventModes::GroupImpact& impact,
+                               const Eigen::VectorXd& impulses, std::span<const BodyState> before,
+                               const BodyPair& first, Instant t) {
+  const auto state = [&](BodyIndex i) -> const BodyState& {
+    const auto place = std::find(impact.bodies.begin(), impact.bodies.end(), i);
+    return before[static_cast<std::size_t>(place - impact.bodies.begin())];
+  };
+  const auto is_first = [&](const BodyPair& p) {
+    return p == first || p == BodyPair{first.second, first.first};
+  };
+  double fastest = 0.0;
+  for (const BodyState& s : before) {
+    fastest = std::max(fastest, s.twist.linear.norm());
+  }
+  const double resolved = 64.0 * epsilon * fastest;
+  const auto tell = [&](std::size_t p) {
+    const auto [a, b] = impact.pairs[p];
+    Event event{.time = t, .kind = EventKind::impact, .a = a, .b = b};
+    double total = 0.0;
+    Vector3 point = Vector3::Zero();
+    for (std::size_t r = 0; r < impact.pair_of_row.size(); ++r) {
+      const double share = impulses[static_cast<Eigen::Index>(r)];
+      if (impact.pair_of_row[r] == p && share > 0.0) {
+        const ContactRow& row = impact.system.rows[r];
+        total += share;
+        point += share * (impact.system.bodies[row.a].position + row.arm_a);
+        event.contact.normal = row.direction;
+        event.contact.gap = impact.gaps[r];
+      }
+    }
+    if (total == 0.0) {
+      return;
+    }
+    const bool only_handed_on =
+        (state(a).twist.linear - motions_.now(a).twist.linear).norm() <= resolved &&
+        (state(b).twist.linear - motions_.now(b).twist.linear).norm() <= resolved;
+    if (only_handed_on && !is_first(impact.pairs[p])) {
+      return;
+    }
+    event.contact.point = point / total;
+    event.contact.restitution = run_.model.restitution(a, b);
+    event.contact.friction = run_.model.friction(a, b);
+    event.before_a = state(a);
+    event.before_b = state(b);
+    event.after_a = motions_.now(a);
+    event.after_b = motions_.now(b);
+    ++run_.cost.impacts;
+    run_.note(event);
+  };
+  for (const bool turn : {true, false}) {
+    for (std::size_t p = 0; p < impact.pairs.size(); ++p) {
+      if (is_first(impact.pairs[p]) == turn) {
+        tell(p);
+      }
+    }
+  }
+}
+
+/// An impact on bodies that are held together goes on through their patches, pair by pair, always
+/// where they approach fastest, until none does; then what is left of the group is settled.
+void EventContacts::hand_on(const Event& first, double approach, std::vector<BodyIndex> bodies,
+                            Instant t) {
+  const std::array<BodyPair, 1> struck{BodyPair{first.a, first.b}};
+  const std::size_t most = most_rounds * bodies.size();
+  for (std::size_t round = 0; run_.law.info().needs_contact; ++round) {
+    const auto worst = modes_.worst_approach(bodies, struck);
+    if (!worst) {
+      break;
+    }
+    if (round == most) {
+      set_free(bodies, t);
+      return run_.stop(t, fmt::format("accumulation: an impact of {} is handed on between bodies "
+                                      "in touch more than {} times; {}",
+                                      run_.names(first.a, first.b), most, part_them));
+    }
+    Event event{.time = t, .kind = EventKind::impact, .a = worst->a, .b = worst->b};
+    event.contact = worst->contact;
+    strike(event);
+  }
+  go_on_from(bodies, {first.a, first.b}, approach, t);
+}
+
+/// What an impact has left of a group is settled, or flies apart.
+void EventContacts::go_on_from(std::span<const BodyIndex> bodies, const BodyPair& first,
+                               double approach, Instant t) {
+  using Kind = EventAccumulation::Finding::Kind;
+  const auto finding = accumulation_.after_impact(first.first, first.second, approach, t);
+  const bool unite = finding.kind == Kind::collapse || finding.kind == Kind::creeps;
+  if (settle(bodies, t,
+             {.unloaded = unite,
+              .unite = unite,
+              .remaining = finding.remaining,
+              .pairs = finding.pairs})) {
+    return;
+  }
+  set_free(bodies, t);
+  if (finding.kind != Kind::none && finding.kind != Kind::collapse) {
+    run_.stop(t, finding.kind == Kind::squeezed ? finding.reason
+                                                : fmt::format("{}; {}", finding.reason, unkept()));
+  }
+}
+
+}  // namespace core
+}  // namespace kairos
