@@ -21,13 +21,17 @@ Patch& ContactGraph::join(BodyIndex a, BodyIndex b) {
     place->second.a = a;
     place->second.b = b;
     touch(a, b);
+    touch(b, a);
   }
   return place->second;
 }
 
-void ContactGraph::touch(BodyIndex a, BodyIndex b) {
-  partners_[a].push_back(b);
-  partners_[b].push_back(a);
+void ContactGraph::touch(BodyIndex i, BodyIndex j) {
+  std::vector<BodyIndex>& partners = partners_[i];
+  const auto place =
+      std::upper_bound(partners.begin(), partners.end(), j,
+                       [&](BodyIndex x, BodyIndex y) { return rank_[x] < rank_[y]; });
+  partners.insert(place, j);
 }
 
 void ContactGraph::part(BodyIndex i, BodyIndex j) {

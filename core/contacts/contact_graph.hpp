@@ -4,6 +4,7 @@
 #include "core/instant.hpp"
 #include "core/state.hpp"
 
+#include <cstdint>
 #include <map>
 #include <utility>
 #include <vector>
@@ -28,7 +29,9 @@ struct Patch {
 /// asked about them. A pair goes as (a, b) with a before b in the order of names.
 class ContactGraph {
  public:
-  explicit ContactGraph(std::size_t bodies) : partners_(bodies) {}
+  /// @param rank  of each body in the order of names
+  explicit ContactGraph(const std::vector<std::uint32_t>& rank)
+      : rank_(rank), partners_(rank.size()) {}
 
   [[nodiscard]] bool holds(BodyIndex i) const { return !partners_[i].empty(); }
   [[nodiscard]] bool empty() const { return patches_.empty(); }
@@ -37,6 +40,7 @@ class ContactGraph {
   [[nodiscard]] bool joins(BodyIndex i, BodyIndex j) const {
     return patches_.contains({i, j}) || patches_.contains({j, i});
   }
+  /// Whom body i touches, in the order of names: a run that is resumed goes on as it would have.
   [[nodiscard]] const std::vector<BodyIndex>& partners(BodyIndex i) const { return partners_[i]; }
 
   Patch& join(BodyIndex a, BodyIndex b);
@@ -45,8 +49,9 @@ class ContactGraph {
   void persist(Archive& archive);
 
  private:
-  void touch(BodyIndex a, BodyIndex b);
+  void touch(BodyIndex i, BodyIndex j);
 
+  std::vector<std::uint32_t> rank_;
   std::map<std::pair<BodyIndex, BodyIndex>, Patch> patches_;
   std::vector<std::vector<BodyIndex>> partners_;
 };

@@ -57,6 +57,8 @@ class Agenda {
 
   /// Bodies in the order of their names.
   [[nodiscard]] const std::vector<BodyIndex>& by_name() const { return by_name_; }
+  /// The place of each body there.
+  [[nodiscard]] const std::vector<std::uint32_t>& ranks() const { return rank_; }
   /// Whether a comes before b there.
   [[nodiscard]] bool before(BodyIndex a, BodyIndex b) const { return rank_[a] < rank_[b]; }
 

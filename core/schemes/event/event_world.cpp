@@ -11,7 +11,7 @@ EventWorld::EventWorld(const Model& model, const Method& method, const SchemeOpt
                        Recorder& recorder)
     : run_(model, method, options, recorder),
       grasps_(model),
-      graph_(model.size()),
+      graph_(run_.agenda.ranks()),
       motions_(run_, method),
       predictor_(run_, motions_, grasps_, graph_, method),
       contacts_(run_, motions_, predictor_, graph_),
