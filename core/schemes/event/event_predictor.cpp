@@ -26,22 +26,37 @@ EventPredictor::EventPredictor(EventRun& run, const EventMotions& motions, const
 }
 
 void EventPredictor::predict(BodyIndex i, Instant t, BodyIndex except) {
+  bodies_[i].since = t;
   if (!broad_phase_) {
     for (const BodyIndex j : bodies_[i].partners) {
       if (j != except) {
-        predict_pair(i, j, t);
+        predict_near(i, j);
       }
     }
     return;
   }
+  find_near(i, t);
+  for (const BodyIndex j : neighbours_) {
+    if (j != except && run_.model.interacts(i, j)) {
+      predict_near(i, j);
+    }
+  }
+}
+
+void EventPredictor::look_around(BodyIndex i, Instant t) {
+  find_near(i, t);
+  for (const BodyIndex j : neighbours_) {
+    if (run_.model.interacts(i, j)) {
+      predict_near(i, j, t);
+    }
+  }
+}
+
+/// The neighbours of i during its next window.
+void EventPredictor::find_near(BodyIndex i, Instant t) {
   open_window(i, t);
   neighbours_.clear();
   broad_phase_->candidates(i, neighbours_);
-  for (const BodyIndex j : neighbours_) {
-    if (j != except && run_.model.interacts(i, j)) {
-      predict_pair(i, j, t);
-    }
-  }
   // Windows grow where few are near and shrink where many are: about ten neighbours cost least.
   double& reach = bodies_[i].reach;
   if (neighbours_.size() > 16) {
@@ -52,9 +67,12 @@ void EventPredictor::predict(BodyIndex i, Instant t, BodyIndex except) {
 }
 
 void EventPredictor::predict_all(Instant t) {
+  for (Watched& body : bodies_) {
+    body.since = t;
+  }
   if (!broad_phase_) {
     for (const auto& [a, b] : run_.model.pairs()) {
-      predict_pair(a, b, t);
+      predict_near(a, b);
     }
     return;
   }
@@ -66,7 +84,7 @@ void EventPredictor::predict_all(Instant t) {
     broad_phase_->candidates(i, neighbours_);
     for (const BodyIndex j : neighbours_) {
       if (i < j && run_.model.interacts(i, j)) {
-        predict_pair(i, j, t);
+        predict_near(i, j);
       }
     }
   }
@@ -100,6 +118,13 @@ void EventPredictor::open_window(BodyIndex i, Instant t) {
   }
   Aabb& swept = bodies_[i].swept;
   swept = swept_bounds_(motions_.moving(i), {t, std::max(horizon, t) - t});
+  // Within its tolerance a detector may tell a pair to touch: that must not depend on who is asked.
+  const double asked = run_.options.toi_tolerance;
+  const double near = asked > 0.0 ? asked : 1e-9 * bounding_radius(run_.model.shape(i));
+  if (std::isfinite(near)) {
+    swept.lower.array() -= near;
+    swept.upper.array() += near;
+  }
   broad_phase_->update(i, swept);
 }
 
@@ -117,7 +142,13 @@ double EventPredictor::window_length(BodyIndex i, Instant t) {
   return 2.0 * reach / (speed + std::sqrt(speed * speed + 2.0 * acceleration * reach));
 }
 
-void EventPredictor::predict_pair(BodyIndex i, BodyIndex j, Instant t) {
+void EventPredictor::predict_near(BodyIndex i, BodyIndex j, Instant known) {
+  ask(i, j, std::max(bodies_[i].since, bodies_[j].since), known);
+}
+
+void EventPredictor::predict_pair(BodyIndex i, BodyIndex j, Instant t) { ask(i, j, t, before_all); }
+
+void EventPredictor::ask(BodyIndex i, BodyIndex j, Instant from, Instant known) {
   // Queries go by name, so that their bits do not depend on who asks.
   const auto [a, b] = run_.agenda.before(i, j) ? std::pair{i, j} : std::pair{j, i};
   const bool leaving = grasps_.leaving(a, b).has_value();
@@ -128,16 +159,26 @@ void EventPredictor::predict_pair(BodyIndex i, BodyIndex j, Instant t) {
     return;
   }
   const double duration =
-      std::min({motions_.of(a).end(), motions_.of(b).end(), run_.epoch_end}) - t;
+      std::min({motions_.of(a).end(), motions_.of(b).end(), run_.epoch_end}) - from;
   if (!(duration > 0.0)) {
     return;
   }
+  const Question question{a, b, from, duration, known};
   if (leaving) {
-    predict_parting(a, b, t, duration, Due::clear_of_hand);
+    predict_parting(question, Due::clear_of_hand);
   } else if (motions_.is_in_field(a, b) || motions_.is_in_field(b, a)) {
-    predict_parting(a, b, t, duration, Due::field_left);
+    predict_parting(question, Due::field_left);
   } else {
-    predict_meeting(a, b, t, duration);
+    predict_meeting(question);
+  }
+}
+
+/// What is due of a pair, unless it has been dealt with.
+void EventPredictor::push(const Question& of, double after, Due due, double patience,
+                          bool decided) {
+  const Instant t = of.from + after;
+  if (of.known < t) {
+    run_.agenda.push(t, due, of.a, of.b, patience, decided);
   }
 }
 
@@ -179,19 +220,20 @@ double EventPredictor::touching_gap(BodyIndex a, BodyIndex b) const {
 
 /// Undecided, and far from touch: the detector ran out of work. What it proved free of contact is
 /// left behind, and what follows is asked in shorter windows.
-void EventPredictor::look_nearer(BodyIndex a, BodyIndex b, Instant t, double duration,
-                                 TimeOfImpact toi) {
+void EventPredictor::look_nearer(const Question& question, TimeOfImpact toi) {
   constexpr double worth_it = 1.0 / 16.0;  // of the window
   constexpr int most_tries = 40;           // to 1e-24 of the window
+  const auto& [a, b, t, whole, known] = question;
   const double allowed = touching_gap(a, b);
+  double duration = whole;
   for (int k = 0; k < most_tries; ++k) {
     const bool touching = toi.status != ToiStatus::undecided || toi.gap <= allowed;
     if (touching && toi.status != ToiStatus::separated) {
-      return push_meeting(a, b, t, toi);
+      return push_meeting(question, toi);
     }
     const double free = toi.status == ToiStatus::separated ? duration : toi.t_lo;
     if (free >= worth_it * duration) {
-      return run_.agenda.push(t + free, Due::recheck, a, b);
+      return push(question, free, Due::recheck);
     }
     duration *= 0.25;
     toi = time_of_impact(a, b, t, duration);
@@ -204,13 +246,14 @@ void EventPredictor::look_nearer(BodyIndex a, BodyIndex b, Instant t, double dur
 }
 
 /// A field is entered where contact is proven; solids never get that far.
-void EventPredictor::push_meeting(BodyIndex a, BodyIndex b, Instant t, const TimeOfImpact& toi) {
-  const bool field = run_.model.is_field(a) || run_.model.is_field(b);
-  run_.agenda.push(t + (field ? toi.t_hi : toi.t_lo), field ? Due::field_entered : Due::impact, a,
-                   b, toi.t_hi - toi.t_lo, toi.status == ToiStatus::impact);
+void EventPredictor::push_meeting(const Question& of, const TimeOfImpact& toi) {
+  const bool field = run_.model.is_field(of.a) || run_.model.is_field(of.b);
+  push(of, field ? toi.t_hi : toi.t_lo, field ? Due::field_entered : Due::impact,
+       toi.t_hi - toi.t_lo, toi.status == ToiStatus::impact);
 }
 
-void EventPredictor::predict_meeting(BodyIndex a, BodyIndex b, Instant t, double duration) {
+void EventPredictor::predict_meeting(const Question& question) {
+  const auto& [a, b, t, duration, known] = question;
   const TimeOfImpact toi = time_of_impact(a, b, t, duration);
   if (!run_.model.is_free(a) && !run_.model.is_free(b)) {
     return;  // asked all the same where nothing is left out; nothing can come of it
@@ -221,38 +264,38 @@ void EventPredictor::predict_meeting(BodyIndex a, BodyIndex b, Instant t, double
       return;
     case ToiStatus::undecided:
       if (toi.gap > touching_gap(a, b)) {
-        return look_nearer(a, b, t, duration, toi);
+        return look_nearer(question, toi);
       }
-      return push_meeting(a, b, t, toi);
+      return push_meeting(question, toi);
     case ToiStatus::impact:
-      return push_meeting(a, b, t, toi);
+      return push_meeting(question, toi);
     case ToiStatus::overlapping:
-      return field ? run_.agenda.push(t, Due::field_entered, a, b)
-                   : leave_overlap(a, b, t, duration);
+      return field ? push(question, 0.0, Due::field_entered) : leave_overlap(question);
   }
 }
 
 /// Two solids that a computation left inside each other, by roundoff: an impact if they approach,
 /// and nothing if they part; a pair that stays would fall through, unless it can be held.
-void EventPredictor::leave_overlap(BodyIndex a, BodyIndex b, Instant t, double duration) {
+void EventPredictor::leave_overlap(const Question& question) {
+  const auto& [a, b, t, duration, known] = question;
   const BodyState state_a = motions_.at(a, t);
   const BodyState state_b = motions_.at(b, t);
   const Overlap o =
       run_.detector.overlap(run_.model.shape(a), state_a.pose, run_.model.shape(b), state_b.pose);
   if (normal_velocity({o.point, o.normal, o.gap}, state_a, state_b) < 0.0) {
-    return run_.agenda.push(t, Due::impact, a, b);
+    return push(question, 0.0, Due::impact);
   }
   const TimeOfImpact parting = time_of_separation(a, b, t, duration);
   // A detector that proves nothing lets them overlap by what it misses.
   const TimeOfImpact meanwhile =
       run_.detector.info().proves ? without_errors(a, b, t, parting.t_hi) : TimeOfImpact{};
   if (parting.status == ToiStatus::overlapping || meanwhile.status == ToiStatus::overlapping) {
-    return run_.agenda.push(t, Due::stays, a, b);
+    return push(question, 0.0, Due::stays);
   }
   if (meanwhile.status != ToiStatus::separated) {
-    return push_meeting(a, b, t, meanwhile);
+    return push_meeting(question, meanwhile);
   }
-  run_.agenda.push(t + parting.t_hi, Due::recheck, a, b);
+  push(question, parting.t_hi, Due::recheck);
 }
 
 /// When they touch as their motions are told, without what these may err by: with it a pair in
@@ -269,11 +312,11 @@ TimeOfImpact EventPredictor::without_errors(BodyIndex a, BodyIndex b, Instant t,
   return toi;
 }
 
-void EventPredictor::predict_parting(BodyIndex a, BodyIndex b, Instant t, double duration,
-                                     Due due) {
+void EventPredictor::predict_parting(const Question& question, Due due) {
+  const auto& [a, b, t, duration, known] = question;
   const TimeOfImpact toi = time_of_separation(a, b, t, duration);
   if (toi.status != ToiStatus::overlapping) {
-    run_.agenda.push(t + toi.t_hi, due, a, b);
+    push(question, toi.t_hi, due);
   }
 }
 
@@ -284,7 +327,7 @@ TimeOfImpact EventPredictor::time_of_separation(BodyIndex a, BodyIndex b, Instan
 }
 
 void EventPredictor::Watched::persist(Archive& archive) {
-  archive(reach, swept.lower, swept.upper);
+  archive(since, reach, swept.lower, swept.upper);
 }
 
 void EventPredictor::persist(Archive& archive) {

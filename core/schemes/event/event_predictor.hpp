@@ -4,6 +4,7 @@
 #include "core/schemes/event/event_motions.hpp"
 #include "core/schemes/shared/grasps.hpp"
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -12,6 +13,11 @@ inline namespace core {
 
 /// When will pairs meet or part? Asks the detector about the motions that bodies have, no further
 /// than the end of the epoch, and puts the answers on the agenda.
+///
+/// A query is canonical: its window starts where the later of the two motions does (or where an
+/// epoch does, or what a hand let go of comes clear), whenever it is made. So an answer depends on
+/// the two motions alone, and not on who else is near: a broad phase changes what a run costs, and
+/// no bit of it.
 class EventPredictor {
  public:
   EventPredictor(EventRun& run, const EventMotions& motions, const Grasps& grasps,
@@ -19,10 +25,13 @@ class EventPredictor {
 
   /// All pairs, from t on.
   void predict_all(Instant t);
-  /// All pairs of i.
+  /// All pairs of i, which moves or meets others from t on as it did not before.
   void predict(BodyIndex i, Instant t) { predict(i, t, i); }
   /// All pairs of i but that with `except`.
   void predict(BodyIndex i, Instant t, BodyIndex except);
+  /// Pairs of i that may have come near: it moves as before, and its window is at its end.
+  void look_around(BodyIndex i, Instant t);
+  /// A pair whose last answer told nothing beyond t.
   void predict_pair(BodyIndex i, BodyIndex j, Instant t);
 
   /// Solids that body i could touch now, appended.
@@ -38,20 +47,35 @@ class EventPredictor {
  private:
   struct Watched {
     std::vector<BodyIndex> partners;  ///< what it can interact with, where there is no broad phase
+    Instant since;                    ///< from when on its pairs are asked
     double reach = 0.0;  ///< how far it goes before its neighbours are looked up again, m
     Aabb swept{};        ///< what the broad phase was told
 
     void persist(Archive& archive);
   };
 
+  /// A pair from an instant on; what was due up to `known` has been dealt with.
+  struct Question {
+    BodyIndex a = 0;
+    BodyIndex b = 0;
+    Instant from;
+    double duration = 0.0;  ///< s
+    Instant known;
+  };
+  static constexpr Instant before_all{-std::numeric_limits<double>::infinity(), 0.0};
+
+  void find_near(BodyIndex i, Instant t);
   void open_window(BodyIndex i, Instant t);
   [[nodiscard]] double window_length(BodyIndex i, Instant t);
-  void predict_meeting(BodyIndex a, BodyIndex b, Instant t, double duration);
+  void predict_near(BodyIndex i, BodyIndex j, Instant known = before_all);
+  void ask(BodyIndex i, BodyIndex j, Instant from, Instant known);
+  void push(const Question& of, double after, Due due, double patience = 0.0, bool decided = true);
+  void predict_meeting(const Question& question);
   [[nodiscard]] TimeOfImpact time_of_impact(BodyIndex a, BodyIndex b, Instant t, double duration);
-  void push_meeting(BodyIndex a, BodyIndex b, Instant t, const TimeOfImpact& toi);
-  void look_nearer(BodyIndex a, BodyIndex b, Instant t, double duration, TimeOfImpact toi);
-  void predict_parting(BodyIndex a, BodyIndex b, Instant t, double duration, Due due);
-  void leave_overlap(BodyIndex a, BodyIndex b, Instant t, double duration);
+  void push_meeting(const Question& of, const TimeOfImpact& toi);
+  void look_nearer(const Question& question, TimeOfImpact toi);
+  void predict_parting(const Question& question, Due due);
+  void leave_overlap(const Question& question);
   /// What a query cost is told.
   TimeOfImpact counted(const TimeOfImpact& toi);
   TimeOfImpact without_errors(BodyIndex a, BodyIndex b, Instant t, double duration);

@@ -69,7 +69,7 @@ void EventWorld::take() {
     case Due::clear_of_hand:
       return hands_.clear(event.a, event.b, event.time);
     case Due::horizon:
-      return predictor_.predict(event.a, event.time);
+      return predictor_.look_around(event.a, event.time);
     case Due::recheck:
       return predictor_.predict_pair(event.a, event.b, event.time);
     case Due::impact:
