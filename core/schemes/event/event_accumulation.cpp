@@ -20,6 +20,11 @@ constexpr double small_rest = 1e-10;
 /// More contacts than these are not followed.
 constexpr std::size_t most_contacts = 24;
 
+/// Impacts that are followed to see whether they end. A light body between heavy ones that close
+/// without a gap goes on for millions; looks that may come at every impact are short.
+constexpr std::int64_t most_of_a_long_look = 200'000;
+constexpr std::int64_t most_of_a_look = 2'000;
+
 /// 3, 4, 6, 8, 12, 16, ...: so that looks cost a constant share of the impacts.
 bool worth_a_look(std::int64_t n) {
   const auto power_of_two = [](std::int64_t k) { return k > 0 && (k & (k - 1)) == 0; };
@@ -137,8 +142,10 @@ EventAccumulation::Finding EventAccumulation::after_impact(BodyIndex a, BodyInde
       }
     }
     // The last impacts of a collapse are no way apart: each may be the one that ends it.
-    if (worth_a_look(history.chain()) || history.on_no_way()) {
-      if (Finding finding = collapse(a, b, t); finding.kind != Finding::Kind::none) {
+    const bool long_look = worth_a_look(history.chain());
+    if (long_look || history.on_no_way()) {
+      Finding finding = collapse(a, b, t, long_look ? most_of_a_long_look : most_of_a_look);
+      if (finding.kind != Finding::Kind::none) {
         if (history.creeps()) {
           finding.kind = Finding::Kind::creeps;
         }
@@ -202,7 +209,8 @@ std::vector<BodyPair> EventAccumulation::cluster_pairs(BodyIndex a, BodyIndex b)
 }
 
 /// The bodies that met lately, followed in relative coordinates: nothing rounds there.
-EventAccumulation::Finding EventAccumulation::collapse(BodyIndex a, BodyIndex b, Instant t) const {
+EventAccumulation::Finding EventAccumulation::collapse(BodyIndex a, BodyIndex b, Instant t,
+                                                       std::int64_t most_impacts) const {
   std::vector<Joined> joined;
   ImpactCluster cluster;
   double horizon = std::numeric_limits<double>::infinity();
@@ -238,7 +246,7 @@ EventAccumulation::Finding EventAccumulation::collapse(BodyIndex a, BodyIndex b,
       cluster.coupling.push_back(row.coupling(column));
     }
   }
-  const ClusterFate fate = follow(std::move(cluster), horizon);
+  const ClusterFate fate = follow(std::move(cluster), horizon, most_impacts);
   if (fate.kind != ClusterFate::Kind::accumulates) {
     return {};
   }

@@ -49,7 +49,8 @@ class EventAccumulation {
  private:
   [[nodiscard]] bool rests(BodyIndex a, BodyIndex b, double approach, double tolerance,
                            Instant t) const;
-  [[nodiscard]] Finding collapse(BodyIndex a, BodyIndex b, Instant t) const;
+  [[nodiscard]] Finding collapse(BodyIndex a, BodyIndex b, Instant t,
+                                 std::int64_t most_impacts) const;
   [[nodiscard]] std::string squeeze(BodyIndex i, Instant t) const;
   [[nodiscard]] std::vector<BodyPair> cluster_pairs(BodyIndex a, BodyIndex b) const;
   [[nodiscard]] double restitution(BodyIndex a, BodyIndex b) const;

@@ -285,15 +285,15 @@ void EventPredictor::leave_overlap(const Question& question) {
   if (normal_velocity({o.point, o.normal, o.gap}, state_a, state_b) < 0.0) {
     return push(question, 0.0, Due::impact);
   }
-  const TimeOfImpact parting = time_of_separation(a, b, t, duration);
-  // A detector that proves nothing lets them overlap by what it misses.
-  const TimeOfImpact meanwhile =
-      run_.detector.info().proves ? without_errors(a, b, t, parting.t_hi) : TimeOfImpact{};
-  if (parting.status == ToiStatus::overlapping || meanwhile.status == ToiStatus::overlapping) {
-    return push(question, 0.0, Due::stays);
-  }
-  if (meanwhile.status != ToiStatus::separated) {
+  const TimeOfImpact meanwhile = without_errors(a, b, t, duration);
+  if (meanwhile.status == ToiStatus::impact || meanwhile.status == ToiStatus::undecided) {
     return push_meeting(question, meanwhile);
+  }
+  // A detector that proves nothing lets them overlap by what it misses.
+  const bool deeper = meanwhile.status == ToiStatus::overlapping && run_.detector.info().proves;
+  const TimeOfImpact parting = time_of_separation(a, b, t, duration);
+  if (deeper || parting.status == ToiStatus::overlapping) {
+    return push(question, 0.0, Due::stays);
   }
   push(question, parting.t_hi, Due::recheck);
 }

@@ -12,7 +12,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Speeds that have shrunk by so much have crossed all that doubles resolve, and half as much
 /// again.
 constexpr double vanished = 1e-24;
-constexpr std::int64_t most_impacts = 200'000;
 /// Impacts of each contact in a row that take no time: elastic ones hand on what they have and end.
 constexpr std::int64_t timeless = 64;
 
@@ -54,7 +53,7 @@ void strike(ImpactCluster& cluster, std::size_t j) {
 
 }  // namespace
 
-ClusterFate follow(ImpactCluster cluster, double horizon) {
+ClusterFate follow(ImpactCluster cluster, double horizon, std::int64_t most_impacts) {
   const auto n = static_cast<std::int64_t>(cluster.contacts.size());
   ClusterFate fate;
   double fastest = 0.0;      // impact so far

@@ -38,8 +38,9 @@ struct ClusterFate {
 /// collapse [McNamara1992], [Bernu1990]; a Zeno phenomenon) where speeds of impact have shrunk by
 /// 1e-24 or impacts follow each other without time passing: the linear motion is self-similar
 /// there, so that what happened over the last decades happens over all that follow. `horizon`, s:
-/// how long the linearisation holds; a cluster without impact for so long has parted.
-[[nodiscard]] ClusterFate follow(ImpactCluster cluster, double horizon);
+/// how long the linearisation holds; a cluster without impact for so long has parted. After
+/// `most_impacts` it is `undecided`.
+[[nodiscard]] ClusterFate follow(ImpactCluster cluster, double horizon, std::int64_t most_impacts);
 
 }  // namespace core
 }  // namespace kairos
