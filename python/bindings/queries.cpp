@@ -6,14 +6,11 @@
 
 #include "python/bindings/arrays.hpp"
 #include "python/bindings/bindings.hpp"
-#include "python/bindings/errors.hpp"
-#include "python/bindings/query_columns.hpp"
-#include "python/bindings/worker_threads.hpp"
+#include "python/bindings/query_bodies.hpp"
+#include "python/bindings/row_loop.hpp"
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
-#include <mutex>
-#include <optional>
 
 namespace py = pybind11;
 
@@ -71,52 +68,6 @@ ToiRow row_of(const TimeOfImpact& toi) {
   return row;
 }
 
-/// The first bad row of a batch, whatever the order in which threads come across bad ones.
-class FirstFailure {
- public:
-  void tell(std::size_t row, const std::string& what) {
-    const std::lock_guard lock(mutex_);
-    if (row < row_) {
-      row_ = row;
-      what_ = what;
-    }
-  }
-  void raise() const {
-    if (row_ != none) {
-      throw InputError("", 0, fmt::format("row {}", row_), what_);
-    }
-  }
-
- private:
-  static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
-  std::mutex mutex_;
-  std::size_t row_ = none;
-  std::string what_;
-};
-
-/// Answers `answer(row)` for all rows with the interpreter's lock released; bad rows are named.
-template <typename Answer>
-void for_all_rows(std::size_t count, std::size_t threads, const Answer& answer) {
-  FirstFailure failure;
-  Interrupts interrupts;
-  {
-    const py::gil_scoped_release unlocked;
-    in_pieces(
-        count, threads,
-        [&](std::size_t first, std::size_t last) {
-          for (std::size_t i = first; i < last; ++i) {
-            try {
-              answer(i);
-            } catch (const std::exception& bad) {
-              failure.tell(i, bad.what());
-            }
-          }
-        },
-        [&] { interrupts.look(); });
-  }
-  failure.raise();
-}
-
 std::shared_ptr<const ContactDetector> locating(const std::string& name) {
   auto detector = find_detector(name);
   const DetectorInfo info = detector->info();
@@ -129,7 +80,31 @@ std::shared_ptr<const ContactDetector> locating(const std::string& name) {
   return detector;
 }
 
-py::array toi(const QueryColumns& a, const QueryColumns& b, const Doubles& duration,
+/// The answer as a row; throws where it is no number.
+ToiRow checked_row(const TimeOfImpact& found) {
+  if (!std::isfinite(found.t_lo + found.t_hi + found.gap + found.normal.sum())) {
+    throw std::range_error("the answer is beyond the range of a double");
+  }
+  return row_of(found);
+}
+
+/// Refuses two half-spaces row by row, where both sides have some.
+class HalfSpaceGuard {
+ public:
+  HalfSpaceGuard(const QueryBodies& a, const QueryBodies& b)
+      : a_(a), b_(b), needed_(a.has_half_spaces() && b.has_half_spaces()) {}
+  void check(std::size_t row) const {
+    if (needed_) {
+      refuse_two_half_spaces(a_.shape(row), b_.shape(row));
+    }
+  }
+
+ private:
+  const QueryBodies &a_, &b_;
+  bool needed_;
+};
+
+py::array toi(const QueryBodies& a, const QueryBodies& b, const Doubles& duration,
               const Doubles& start, const std::string& detector_name, double tolerance,
               std::size_t threads, std::size_t count) {
   if (!(tolerance >= 0.0) || !std::isfinite(tolerance)) {
@@ -142,45 +117,49 @@ py::array toi(const QueryColumns& a, const QueryColumns& b, const Doubles& durat
   py::array answers(toi_dtype(), py::array::ShapeContainer{static_cast<py::ssize_t>(count)});
   auto* rows = static_cast<ToiRow*>(answers.mutable_data());
   const NumberColumn durations(duration), starts(start);
+  const HalfSpaceGuard half_spaces(a, b);
+  const double longest =
+      duration.size() == 0 ? 0.0
+                           : *std::max_element(duration.data(), duration.data() + duration.size());
+  const bool a_is_near = a.stays_near(longest), b_is_near = b.stays_near(longest);
   for_all_rows(count, threads, [&](std::size_t i) {
     const Window window = window_of(starts[i], durations[i]);
-    const Shape shape_a = a.shape(i, "a"), shape_b = b.shape(i, "b");
-    refuse_two_half_spaces(shape_a, shape_b);
-    Motion made_a, made_b;  // of bodies that are given as numbers
-    const Motion& motion_a = a.motion(i, window, "a", made_a);
-    const Motion& motion_b = b.motion(i, window, "b", made_b);
-    const TimeOfImpact found =
-        detector->time_of_impact({shape_a, motion_a}, {shape_b, motion_b}, window, tolerance);
-    if (!std::isfinite(found.t_lo + found.t_hi + found.gap + found.normal.sum())) {
-      throw std::range_error("the answer is beyond the range of a double");
+    half_spaces.check(i);
+    if (!a_is_near) {
+      a.check_reach(i, window, "a");
     }
-    rows[i] = row_of(found);
+    if (!b_is_near) {
+      b.check_reach(i, window, "b");
+    }
+    const Motion motion_a = a.motion(i, window), motion_b = b.motion(i, window);
+    rows[i] = checked_row(detector->time_of_impact({a.shape(i), motion_a}, {b.shape(i), motion_b},
+                                                   window, tolerance));
   });
   return answers;
 }
 
-py::array overlap(const QueryColumns& a, const QueryColumns& b, std::size_t threads,
+py::array overlap(const QueryBodies& a, const QueryBodies& b, std::size_t threads,
                   std::size_t count) {
   const auto detector = find_detector("certified");
   py::array_t<bool> answers(static_cast<py::ssize_t>(count));
   bool* rows = answers.mutable_data();
+  const HalfSpaceGuard half_spaces(a, b);
   for_all_rows(count, threads, [&](std::size_t i) {
-    const Shape shape_a = a.shape(i, "a"), shape_b = b.shape(i, "b");
-    refuse_two_half_spaces(shape_a, shape_b);
-    rows[i] = detector->overlaps(shape_a, a.pose(i, "a"), shape_b, b.pose(i, "b"));
+    half_spaces.check(i);
+    rows[i] = detector->overlaps(a.shape(i), a.pose(i), b.shape(i), b.pose(i));
   });
   return answers;
 }
 
-py::array distance(const QueryColumns& a, const QueryColumns& b, std::size_t threads,
+py::array distance(const QueryBodies& a, const QueryBodies& b, std::size_t threads,
                    std::size_t count) {
   const auto detector = find_detector("certified");
   py::array answers(distance_dtype(), py::array::ShapeContainer{static_cast<py::ssize_t>(count)});
   auto* rows = static_cast<DistanceRow*>(answers.mutable_data());
+  const HalfSpaceGuard half_spaces(a, b);
   for_all_rows(count, threads, [&](std::size_t i) {
-    const Shape shape_a = a.shape(i, "a"), shape_b = b.shape(i, "b");
-    refuse_two_half_spaces(shape_a, shape_b);
-    const Overlap found = detector->overlap(shape_a, a.pose(i, "a"), shape_b, b.pose(i, "b"));
+    half_spaces.check(i);
+    const Overlap found = detector->overlap(a.shape(i), a.pose(i), b.shape(i), b.pose(i));
     rows[i].gap = found.gap;
     copy(found.normal, rows[i].normal);
     copy(found.point, rows[i].point);
@@ -191,7 +170,7 @@ py::array distance(const QueryColumns& a, const QueryColumns& b, std::size_t thr
 }  // namespace
 
 void bind_queries(py::module_& module) {
-  bind_query_columns(module);
+  bind_query_bodies(module);
   module.def("toi", &toi, py::arg("a"), py::arg("b"), py::arg("duration"), py::arg("start"),
              py::arg("detector"), py::arg("tolerance"), py::arg("threads"), py::arg("count"));
   module.def("overlap", &overlap, py::arg("a"), py::arg("b"), py::arg("threads"), py::arg("count"));
