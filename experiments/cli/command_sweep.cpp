@@ -54,7 +54,8 @@ void SweepCommand::merge() const {
     throw InputError("", 0, "--merge", "needs folders of shards alone: they know their spec");
   }
   const ExperimentOutcome outcome = merge_shards(merged, size.force, out);
-  fmt::print("{} runs merged in {:.1f} s -> {}\n", outcome.runs, outcome.run_seconds, out);
+  fmt::print("{} runs merged in {:.1f} s, figures in {:.1f} s -> {}\n", outcome.runs,
+             outcome.run_seconds, outcome.figure_seconds, out);
   if (!outcome.figure_problem.empty()) {
     fmt::print(stderr, "{}\n", outcome.figure_problem);
   }

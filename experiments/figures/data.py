@@ -43,6 +43,11 @@ class Experiment:
         """kind: runs, summary, series or apexes."""
         return read_csv(os.path.join(self.folder, f"{sweep}_{kind}.csv"))
 
+    def length(self, sweep, kind):
+        """Rows of such a table, without reading them into memory."""
+        with open(os.path.join(self.folder, f"{sweep}_{kind}.csv"), "rb") as file:
+            return sum(1 for _ in file) - 1
+
     def rows(self, table):
         """A table by its name; figures of the thesis have no sweeps."""
         return read_csv(os.path.join(self.folder, f"{table}.csv"))

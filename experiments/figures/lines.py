@@ -1,5 +1,7 @@
 """Any sweep: one panel per metric against an axis, a line per method, medians with quartiles."""
 
+import sys
+
 import matplotlib.pyplot as plt
 
 import style
@@ -9,8 +11,16 @@ from data import points, unique
 YES_OR_NO = ("tunnelled", "passed", "turned", "out")  # 0 or 1 in a run: drawn as the fraction of runs
 
 
+MOST_POINTS = 100_000  # of a sweep: more are no picture, and do not fit into memory as a table
+
+
 def draw(data, figures):
     for sweep in data.sweeps():
+        points_of = data.length(sweep, "summary")
+        if points_of > MOST_POINTS:
+            print(f"no figure of {sweep}: it would have {points_of} points; up to {MOST_POINTS} are "
+                  "drawn", file=sys.stderr)
+            continue
         draw_sweep(data, figures, sweep)
 
 

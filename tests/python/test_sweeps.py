@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import kairos
+import loopback_slurm
 from conftest import SOURCE
 
 SPEC = """
@@ -149,14 +150,81 @@ def test_dask_loses_nothing_with_a_worker_killed(program, spec, tmp_path):
     assert differences(tmp_path / "one", tmp_path / "dask") == []
 
 
-def test_a_slurm_array_runs_as_it_is(program, spec, tmp_path):
-    if not shutil.which("sbatch") or subprocess.run(["sinfo"], capture_output=True).returncode:
-        pytest.skip("no Slurm controller answers: the array script is tried without one")
+@pytest.fixture(scope="module")
+def slurm():
+    """The environment of a Slurm controller with two daemons."""
+    if loopback_slurm.missing():
+        pytest.skip(f"apt-get install slurm-wlm: there is no {', '.join(loopback_slurm.missing())}")
+    with loopback_slurm.cluster() as surroundings:
+        yield surroundings
+
+
+def array_of(slurm, spec, shards, folder, *options):
+    """Submits the array script as it is; returns the number of the job."""
     script = os.path.join(SOURCE, "experiments", "clusters", "sweep.slurm")
-    subprocess.run(["sbatch", "--wait", "--array=1-4", f"--output={tmp_path}/%a.log", script,
-                    str(spec), str(tmp_path / "shards")], check=True, capture_output=True)
+    said = subprocess.run(["sbatch", "--parsable", f"--array=1-{shards}", *options,
+                           f"--output={folder}.%a.log", script, str(spec), str(folder)],
+                          env=slurm, check=True, text=True, capture_output=True).stdout
+    return said.strip().split(";")[0]
+
+
+def wait_for(slurm, job, seconds=120):
+    end = time.monotonic() + seconds
+    while subprocess.run(["squeue", "--noheader", f"--job={job}"], env=slurm, text=True,
+                         capture_output=True).stdout.strip():
+        assert time.monotonic() < end, subprocess.run(
+            ["squeue", "--long"], env=slurm, text=True, capture_output=True).stdout
+        time.sleep(0.2)
+
+
+def waits_for_its_time(slurm, task):
+    """Slurm starts a requeued task two minutes later, unless it is told otherwise."""
+    told = subprocess.run(["squeue", "--noheader", f"--job={task}", "--format=%T %r"], env=slurm,
+                          text=True, capture_output=True).stdout
+    return told.strip() == "PENDING BeginTime"
+
+
+def test_a_slurm_array_loses_nothing_with_a_task_requeued(program, slurm, tmp_path):
+    """A controller and two daemons; a task at work is killed and requeued, and goes on."""
+    spec = tmp_path / "spec.toml"
+    spec.write_text(SPEC.replace("repeats = 5", "repeats = 1500"))  # some seconds
+    shards = tmp_path / "shards"
+    job = array_of(slurm, spec, 4, shards)
+    rows = shards / "1" / "spec.rows"
+    end = time.monotonic() + 60
+    while not (rows.exists() and rows.stat().st_size > 10000):
+        assert time.monotonic() < end
+        time.sleep(0.01)
+    subprocess.run(["scontrol", "requeue", f"{job}_1"], env=slurm, check=True)
+    assert not (shards / "1" / "shard.csv").exists()  # it was at work
+    while not waits_for_its_time(slurm, f"{job}_1"):  # its processes have ended
+        assert time.monotonic() < end
+        time.sleep(0.1)
+    kept = rows.stat().st_size
+    subprocess.run(["scontrol", "update", f"JobId={job}_1", "StartTime=now"], env=slurm, check=True)
+    told = subprocess.run(["scontrol", "show", "job", f"{job}_1"], env=slurm, check=True, text=True,
+                          capture_output=True).stdout
+    assert "Restarts=1" in told
+    wait_for(slurm, job)
+    assert rows.stat().st_size > kept
+    kairos.merge(shards, out=tmp_path / "merged")
     kairos.sweep(spec, out=tmp_path / "one")
-    kairos.merge(tmp_path / "shards", out=tmp_path / "merged")
+    assert len(kairos.Sweep(tmp_path / "merged").runs) == 2 * 8 * 1500
+    assert differences(tmp_path / "one", tmp_path / "merged") == []
+
+
+def test_some_tasks_of_a_slurm_array_are_submitted_again(program, slurm, spec, tmp_path):
+    shards = tmp_path / "shards"
+    wait_for(slurm, array_of(slurm, spec, 3, shards))
+    shutil.rmtree(shards / "2")
+    with pytest.raises(kairos.InputError, match="of 3 shards these are missing: 2"):
+        kairos.merge(shards, out=tmp_path / "merged")
+    script = os.path.join(SOURCE, "experiments", "clusters", "sweep.slurm")
+    subprocess.run(["sbatch", "--wait", "--array=2", f"--output={shards}.again.log", script,
+                    str(spec), str(shards)], check=True, capture_output=True,
+                   env={**slurm, "KAIROS_SHARDS": "3"})
+    kairos.merge(shards, out=tmp_path / "merged")
+    kairos.sweep(spec, out=tmp_path / "one")
     assert differences(tmp_path / "one", tmp_path / "merged") == []
 
 
