@@ -6,10 +6,10 @@
 #include "experiments/output/atomic_file.hpp"
 #include "experiments/run_error.hpp"
 #include "experiments/view/view_files.hpp"
-#include "experiments/view/view_page.hpp"
 #include "experiments/view/viewer_template.hpp"
 #include "simulation/option.hpp"
 #include "simulation/registry.hpp"
+#include "simulation/view/view_page.hpp"
 #include "simulation/view/view_recorder.hpp"
 
 #include <CLI/CLI.hpp>

@@ -30,6 +30,7 @@ std::unique_ptr<RunRecord> run(const SceneDraft& draft, const py::dict& options,
   {
     const py::gil_scoped_release unlocked;
     record->result = simulate(*record->model, record->choice, *record->kept, {}, own);
+    record->view = record->kept->finish_view();
   }
   return record;
 }
@@ -142,6 +143,7 @@ void bind_run(py::module_& module) {
   module.def("run", &run, py::arg("scene"), py::arg("options"), py::arg("law"), py::arg("listener"),
              py::arg("motions"));
   module.def("why_refused", &refused, py::arg("scene"), py::arg("options"));
+  module.def("page_of", &page_of, py::arg("page_template"), py::arg("runs"));
   py::class_<RunRecord>(module, "RunRecord", "A finished run; see kairos.Run.")
       .def_property_readonly("status",
                              [](const RunRecord& r) {

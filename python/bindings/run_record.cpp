@@ -1,6 +1,11 @@
 #include "python/bindings/run_record.hpp"
 
+#include "simulation/view/view_page.hpp"
+
+#include <fmt/format.h>
+
 #include "python/bindings/arrays.hpp"
+#include <stdexcept>
 
 namespace py = pybind11;
 
@@ -30,10 +35,26 @@ LedgerRow row_of(const Frame& frame) {
 RunKeeper::RunKeeper(bool keep_motions, const py::object& listener)
     : keep_motions_(keep_motions),
       frame_listener_(method_of(listener, "frame")),
-      event_listener_(method_of(listener, "event")) {}
+      event_listener_(method_of(listener, "event")) {
+  if (keep_motions) {
+    viewer_.emplace();
+  }
+}
+
+template <typename Tell>
+void RunKeeper::view(const Tell& tell) {
+  if (viewer_) {
+    try {
+      tell(*viewer_);
+    } catch (const std::length_error&) {
+      viewer_.reset();  // the run goes on without a page
+    }
+  }
+}
 
 void RunKeeper::begin(const Model& model) {
   model_ = &model;
+  view([&](ViewRecorder& viewer) { viewer.begin(model); });
   trajectory_.begin(model);
   metrics_.begin(model);
 }
@@ -44,6 +65,7 @@ void RunKeeper::frame(const Frame& frame) {
   states_.insert(states_.end(), frame.bodies.begin(), frame.bodies.end());
   ledger_.push_back(row_of(frame));
   metrics_.frame(frame);
+  view([&](ViewRecorder& viewer) { viewer.frame(frame); });
   if (!frame_listener_.is_none()) {
     tell_frame(frame);
   }
@@ -64,16 +86,49 @@ void RunKeeper::tell_frame(const Frame& frame) {
   frame_listener_(frame.index, frame.time.seconds, states);
 }
 
-void RunKeeper::motion(BodyIndex body, const Motion& motion) { trajectory_.motion(body, motion); }
+void RunKeeper::motion(BodyIndex body, const Motion& motion) {
+  trajectory_.motion(body, motion);
+  view([&](ViewRecorder& viewer) { viewer.motion(body, motion); });
+}
 
 void RunKeeper::event(const Event& event) {
   interrupts_.look();
   trajectory_.event(event);
   metrics_.event(event);
+  view([&](ViewRecorder& viewer) { viewer.event(event); });
   if (!event_listener_.is_none()) {
     const py::gil_scoped_acquire lock;
     event_listener_(events_array(*model_, {event})[py::int_(0)]);
   }
+}
+
+std::optional<ViewRun> RunKeeper::finish_view() {
+  std::optional<ViewRun> run;
+  if (viewer_) {
+    run = std::move(*viewer_).finish();
+    viewer_.reset();
+  }
+  return run;
+}
+
+std::string page_of(const std::string& page_template, const std::vector<const RunRecord*>& runs) {
+  std::vector<ViewRun> shown;
+  for (const RunRecord* run : runs) {
+    if (!run->view) {
+      throw std::invalid_argument(
+          fmt::format("the run of '{}' kept no motions, or more than a page can hold; run with "
+                      "motions=True, or for a shorter time",
+                      run->model->scene().name));
+    }
+    shown.push_back(*run->view);
+    const MethodChoice& method = run->choice.method;
+    shown.back().method = fmt::format("{} + {} + {} + {}", method.scheme, method.integrator,
+                                      method.detector, method.impact);
+    if (run->result.status == RunStatus::stopped) {
+      shown.back().reason = run->result.reason;
+    }
+  }
+  return view_page(page_template, shown);
 }
 
 }  // namespace kairos::python

@@ -3,6 +3,7 @@
 #include "core/trajectory.hpp"
 #include "simulation/run_metrics.hpp"
 #include "simulation/simulate.hpp"
+#include "simulation/view/view_recorder.hpp"
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -11,6 +12,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace kairos::python {
@@ -41,10 +43,16 @@ class RunKeeper final : public Recorder {
   [[nodiscard]] const std::vector<BodyState>& states() const { return states_; }
   [[nodiscard]] const std::vector<LedgerRow>& ledger() const { return ledger_; }
   [[nodiscard]] const Trajectory& trajectory() const { return trajectory_; }
+  /// Ends the recording for a page; call once, after the run. None where no motions were kept, or
+  /// more than a page can hold.
+  [[nodiscard]] std::optional<ViewRun> finish_view();
   [[nodiscard]] const RunMetrics& metrics() const { return metrics_.metrics(); }
 
  private:
   void tell_frame(const Frame& frame);
+  /// Calls `tell(recorder)` for the page's recorder, as long as a page can hold the run.
+  template <typename Tell>
+  void view(const Tell& tell);
 
   bool keep_motions_;
   const Model* model_ = nullptr;
@@ -53,6 +61,7 @@ class RunKeeper final : public Recorder {
   std::vector<LedgerRow> ledger_;
   Trajectory trajectory_;
   MetricsRecorder metrics_;
+  std::optional<ViewRecorder> viewer_;
   pybind11::object frame_listener_, event_listener_;
   Interrupts interrupts_;
 };
@@ -63,6 +72,7 @@ struct RunRecord {
   RunChoice choice;
   std::unique_ptr<RunKeeper> kept;
   RunResult result;
+  std::optional<ViewRun> view;
 };
 
 /// Events as a structured array, the columns of `events.csv`.
@@ -70,5 +80,8 @@ struct RunRecord {
 /// What `summary.json` says, as dicts.
 [[nodiscard]] pybind11::dict summary_of(const RunRecord& run);
 [[nodiscard]] pybind11::dict cost_of(const RunRecord& run);
+/// The page that shows runs in step, one or two, as HTML text. Throws `std::invalid_argument`.
+[[nodiscard]] std::string page_of(const std::string& page_template,
+                                  const std::vector<const RunRecord*>& runs);
 
 }  // namespace kairos::python

@@ -44,6 +44,20 @@ def data_folder(name: str) -> str:
     return ""
 
 
+@functools.lru_cache(maxsize=None)
+def viewer_page() -> str:
+    """Text of the page of `kairos view`, without runs. Raises `ProgramError` where it is not there."""
+    here = os.path.dirname(program())
+    for folder in (os.path.join(here, "..", "share", "kairos", "studio"),
+                   os.path.join(here, "..", "studio")):  # installed; in the build tree
+        path = os.path.join(folder, "viewer.html")
+        if os.path.isfile(path):
+            with open(path, encoding="utf-8") as file:
+                return file.read()
+    raise ProgramError("the page of kairos view is not built beside the program "
+                       f"{program()}; that takes Node and npm")
+
+
 def call(*arguments, input_text=None) -> str:
     """Runs `kairos ARGUMENTS` and returns what it prints. Raises `InputError` where the input is
     wrong, `ProgramError` otherwise; Ctrl-C ends it."""

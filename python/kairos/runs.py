@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import inspect
 import os
+from html import escape
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Union
 
 import numpy as np
 
 from . import _kairos
+from .errors import ProgramError
+from .program import viewer_page
 from .scene import Scene
 from .states import States
 
@@ -17,6 +20,8 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._options import Options  # a stub, written from the table when the package is built
+
+_LARGEST_PAGE = 20_000_000  # characters: a notebook with a few of these still opens
 
 SceneLike = Union[Scene, str, os.PathLike]
 
@@ -103,7 +108,24 @@ class Run:
                                events=pandas.DataFrame(_flat(self.events)),
                                ledger=pandas.DataFrame(_flat(self.ledger)))
 
+    def view(self, path=None, *, beside: Run | None = None) -> str:
+        """The page of `kairos view`: the run in three dimensions at any time, its events and its
+        energy, as one HTML file for any browser. beside: another run, shown in step.
+
+        Writes it to `path` and returns the path; without one returns the text. Raises
+        `ProgramError` where the page does not come with the program, `ValueError` where the run
+        kept no motions.
+        """
+        runs = [self] if beside is None else [self, beside]
+        text = _kairos.page_of(viewer_page(), [run._record for run in runs])
+        if path is None:
+            return text
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return os.fspath(path)
+
     def _repr_html_(self):
+        """A notebook shows the page of `view` below what became of the run."""
         method = self.summary["method"]
         rows = [("scene", self.summary["scene"]),
                 ("method", " + ".join(str(method[k]) for k in
@@ -112,9 +134,18 @@ class Run:
                 ("frames, events", f"{len(self.times)}, {len(self.events)}"),
                 ("deepest penetration", f"{self.summary['metrics']['max_depth']:.6g} m"),
                 ("energy error", f"{self.summary['metrics']['energy_error']:.3e} J")]
-        from html import escape
-        return "<table>" + "".join(f"<tr><th>{escape(k)}</th><td>{escape(str(v))}</td></tr>"
-                                   for k, v in rows) + "</table>"
+        table = "<table>" + "".join(f"<tr><th>{escape(k)}</th><td>{escape(str(v))}</td></tr>"
+                                    for k, v in rows) + "</table>"
+        try:
+            page = self.view()
+        except (ProgramError, ValueError) as error:
+            return table + f"<p>{escape(str(error))}</p>"
+        if len(page) > _LARGEST_PAGE:
+            return table + ("<p>The page of this run is too large for a notebook: "
+                            "<code>run.view(\"run.html\")</code> writes it to a file.</p>")
+        # A frame of its own: neither page can reach into the other.
+        return table + ('<iframe sandbox="allow-scripts" style="width:100%;height:44em;border:0" '
+                        f'title="{escape(self.summary["scene"])}" srcdoc="{escape(page)}"></iframe>')
 
     def __repr__(self):
         return (f"<kairos.Run of {self.summary['scene']!r}: {self.status} at {self.end:g} s, "

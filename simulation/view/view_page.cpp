@@ -1,13 +1,15 @@
-#include "experiments/view/view_page.hpp"
+#include "simulation/view/view_page.hpp"
 
-#include "experiments/run_error.hpp"
 #include "simulation/output/json_writer.hpp"
 #include "simulation/version.hpp"
 #include "simulation/view/packed_run.hpp"
 
 #include <fmt/format.h>
 
-namespace kairos::experiments {
+#include <stdexcept>
+
+namespace kairos {
+inline namespace simulation {
 namespace {
 
 constexpr std::string_view place_of_data = "<!--kairos-data-->";
@@ -31,7 +33,7 @@ std::string without_markup(const std::string& json) {
 std::string view_page(std::string_view page_template, std::span<const ViewRun> runs) {
   const std::size_t place = page_template.find(place_of_data);
   if (place == std::string_view::npos) {
-    throw RunError(fmt::format("the page's template has no {}; build it again", place_of_data));
+    throw std::invalid_argument(fmt::format("the page's template has no {}; build it again", place_of_data));
   }
   JsonWriter json;
   json.text("program", "kairos " + std::string(version()));
@@ -51,4 +53,5 @@ std::string view_page(std::string_view page_template, std::span<const ViewRun> r
   return page += page_template.substr(place + place_of_data.size());
 }
 
-}  // namespace kairos::experiments
+}  // namespace simulation
+}  // namespace kairos
