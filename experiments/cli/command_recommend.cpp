@@ -4,6 +4,8 @@
 #include "experiments/cli/checks.hpp"
 #include "experiments/cli/commands.hpp"
 #include "experiments/cli/run_options.hpp"
+#include "experiments/output/atomic_file.hpp"
+#include "experiments/output/table.hpp"
 #include "experiments/run_error.hpp"
 #include "experiments/tradeoff/recommend.hpp"
 
@@ -20,6 +22,7 @@ namespace {
 struct RecommendCommand {
   SceneOptions scene;
   std::string error;
+  std::string csv;
   std::optional<std::string> penetration, budget, duration;
   std::size_t threads = 0;
 
@@ -73,6 +76,26 @@ void print_evidence(const Assessment& assessment, const Recommendation& found) {
   }
 }
 
+/// A row per method in the order of its work; `recommended` is 1 for the cheapest that does, and
+/// `shortcoming` says why one does not. Errors are empty where a method did not come to its end.
+Table evidence_table(const Assessment& assessment, const Recommendation& found) {
+  Table table{{"method", "options", "work", "end_error", "penetration", "energy_error",
+               "recommended", "shortcoming"},
+              {}};
+  for (const std::size_t i : found.ranked) {
+    const auto& [candidate, run, errors] = assessment.methods[i];
+    const auto cell = [whole = run.completed()](double x) {
+      return whole ? number_cell(x) : Cell();
+    };
+    table.rows.push_back({candidate.name, candidate.options(),
+                          static_cast<std::int64_t>(run.work()), cell(errors.position),
+                          cell(errors.penetration), cell(errors.energy),
+                          std::int64_t{found.pick == i ? 1 : 0},
+                          found.refused.empty() ? found.shortcomings[i] : found.refused});
+  }
+  return table;
+}
+
 void RecommendCommand::run() const {
   const Requirements wanted = requirements();
   const Model model(scene.scene());
@@ -110,6 +133,9 @@ void RecommendCommand::run() const {
              assessment.reference.sentence, assessment.reference.kind,
              assessment.reference.position_uncertainty);
   print_evidence(assessment, found);
+  if (!csv.empty()) {
+    write_file(csv, evidence_table(assessment, found).csv());
+  }
   if (!found.pick) {
     throw RunError(found.refused.empty()
                        ? fmt::format("{}: no method meets {}", assessment.scene, asked)
@@ -135,6 +161,8 @@ void add_recommend_command(CLI::App& app) {
       ->type_name("T");
   recommend->add_option("--duration", command->duration, "how long, s or with a unit")
       ->type_name("T");
+  recommend->add_option("--csv", command->csv, "the evidence as a table, a row per method")
+      ->type_name("FILE");
   recommend
       ->add_option("--threads", command->threads,
                    "0: one per core; the answer does not depend on it")

@@ -21,14 +21,14 @@ from .program import program
 from .runs import Run, options, plug_ins, run, why_refused
 from .scene import Scene, shipped_scenes
 from .states import States
-from .sweeps import Sweep, merge, recommend, sweep, tradeoff
+from .sweeps import Recommendation, Sweep, merge, recommend, sweep, tradeoff
 from .tables import Table
 
 __version__ = dict(versions())["kairos"]
 
 __all__ = [
     "Bodies", "CallableError", "Contact", "ContactBody", "InputError", "Motion", "ProgramError",
-    "Run", "Scene", "Spline", "States", "Status", "Sweep", "Table", "boxes", "distance",
+    "Recommendation", "Run", "Scene", "Spline", "States", "Status", "Sweep", "Table", "boxes", "distance",
     "first_contact", "half_spaces", "merge", "options", "overlap", "plot", "plug_ins", "program",
     "recommend", "run", "shipped_scenes", "spheres", "sweep", "toi", "tradeoff", "versions",
     "why_refused",

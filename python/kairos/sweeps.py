@@ -9,6 +9,7 @@ import re
 import shutil
 import tempfile
 
+from .errors import ProgramError
 from .program import call
 from .scene import Scene, _find
 from .tables import Table
@@ -147,10 +148,44 @@ def tradeoff(scene, *, duration=None, out=None, threads=0) -> Sweep:
         return Sweep(folder)
 
 
-def recommend(scene, error, *, penetration=None, duration=None, threads=0) -> str:
-    """The cheapest method that meets a bound on a scene, with the evidence, as the program prints
-    it. error: of a position at the end, m; penetration: deepest, m."""
-    with _scene_file(scene) as path:
+class Recommendation:
+    """What `recommend` found: `pick`, the name of the cheapest method that does (None: none does),
+    its `options` as the program takes them, `table` with a row per method in the order of its work,
+    and `text`, what the program prints."""
+
+    def __init__(self, text, table):
+        self.text = text
+        self.table = table
+        chosen = [row for row in table.rows() if row["recommended"] == "1"]
+        self.pick = chosen[0]["method"] if chosen else None
+        self.options = chosen[0]["options"] if chosen else None
+
+    def _repr_html_(self):
+        from html import escape
+        heads = "".join(f"<th>{escape(name)}</th>" for name in self.table.columns)
+        rows = "".join("<tr>" + "".join(f"<td>{escape(text)}</td>" for text in row.values()) + "</tr>"
+                       for row in self.table.rows())
+        return f"<p>{escape(self.text.splitlines()[0])}</p><table><tr>{heads}</tr>{rows}</table>"
+
+    def __str__(self):
+        return self.text
+
+    def __repr__(self):
+        return f"<kairos.Recommendation: {self.pick or 'none'}>"
+
+
+def recommend(scene, error, *, penetration=None, duration=None, threads=0) -> Recommendation:
+    """The cheapest method that meets a bound on a scene, with the evidence. error: of a position at
+    the end, m; penetration: deepest, m. Where none meets it, `pick` is None."""
+    path = os.path.join(tempfile.mkdtemp(prefix="kairos-"), "recommend.csv")
+    with _scene_file(scene) as scene_path:
         limits = ["--penetration", penetration] if penetration is not None else []
         limits += ["--duration", duration] if duration is not None else []
-        return call("recommend", path, "--error", error, *limits, "--threads", threads)
+        try:
+            text = call("recommend", scene_path, "--error", error, *limits, "--threads", threads,
+                        "--csv", path)
+        except ProgramError as none_does:
+            if not os.path.isfile(path):
+                raise
+            text = str(none_does)
+    return Recommendation(text, Table(path))

@@ -33,7 +33,8 @@ std::string without_markup(const std::string& json) {
 std::string view_page(std::string_view page_template, std::span<const ViewRun> runs) {
   const std::size_t place = page_template.find(place_of_data);
   if (place == std::string_view::npos) {
-    throw std::invalid_argument(fmt::format("the page's template has no {}; build it again", place_of_data));
+    throw std::invalid_argument(
+        fmt::format("the page's template has no {}; build it again", place_of_data));
   }
   JsonWriter json;
   json.text("program", "kairos " + std::string(version()));

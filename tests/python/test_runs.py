@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import kairos
+from kairos.program import viewer_page
 from test_scenes import drop, refused
 
 SCENES = [("bounce", {}), ("drag-drop", {"integrator": "rk4"}), ("spinning-box", {}),
@@ -149,3 +150,22 @@ def test_a_run_shows_itself():
     run = kairos.run(drop())
     assert "drop" in repr(run) and "completed" in repr(run)
     assert "event-driven" in run._repr_html_()
+
+
+def test_a_run_shows_itself_as_the_page_of_kairos_view(program, tmp_path):
+    try:
+        viewer_page()
+    except kairos.ProgramError as error:
+        pytest.skip(str(error))
+    program("view", "bounce", "--duration", "2", "--beside", "thesis", "--out", tmp_path / "a.html")
+    run = kairos.run("bounce", duration=2)
+    thesis = kairos.run("bounce", duration=2, scheme="original", integrator="thesis-euler",
+                        detector="sat", impact="thesis")
+    assert run.view(tmp_path / "b.html", beside=thesis) == str(tmp_path / "b.html")
+    assert (tmp_path / "a.html").read_bytes() == (tmp_path / "b.html").read_bytes()
+    shown = run._repr_html_()
+    assert shown.count("<iframe") == 1 and "kairos-numbers-0" in shown and "</iframe>" in shown
+    unseen = kairos.run("bounce", duration=2, motions=False)
+    with pytest.raises(ValueError, match="kept no motions"):
+        unseen.view()
+    assert "<iframe" not in unseen._repr_html_() and "kept no motions" in unseen._repr_html_()

@@ -94,7 +94,14 @@ def test_tradeoff_and_recommend_take_a_scene_built_here(program):
     scene.ball("ball", radius=0.1, mass=1, position=(0, 1, 0), restitution=0.5)
     tables = kairos.tradeoff(scene).tables
     assert any("method" in table.columns and len(table) > 3 for table in tables.values())
-    assert "event-driven" in kairos.recommend(scene, 1e-3)
+    advice = kairos.recommend(scene, 1e-3)
+    assert "event-driven" in str(advice) and "event-driven auto" in advice.table["method"]
+    pick = advice.table["method"].tolist().index(advice.pick)
+    assert advice.table["recommended"].sum() == advice.table["recommended"][pick] == 1
+    assert advice.table["end_error"][pick] <= 1e-3
+    assert np.all(np.diff(advice.table["work"]) >= 0) and advice.pick in advice._repr_html_()
+    none = kairos.recommend("drag-drop", 1e-300, duration=0.5)
+    assert none.pick is None and all(none.table["shortcoming"])
 
 
 def test_merging_names_what_is_missing(program, spec, tmp_path):
