@@ -63,6 +63,7 @@ function timeKey({ player, setSpeed, toggle, nextBody, nextTrail }: Actions, eve
 function taken(event: KeyboardEvent): boolean {
   const target = event.target;
   if (target instanceof HTMLSelectElement) return true;
+  if (target instanceof HTMLInputElement && target.type === "range" && target.id !== "scrubber") return true;
   if (target instanceof HTMLInputElement && !["range", "checkbox", "radio"].includes(target.type)) return true;
   if (target instanceof HTMLElement && target.isContentEditable) return true;
   const presses = event.key === " " || event.key === "Enter";

@@ -63,6 +63,16 @@ export class Stage {
     this.controls.update();
   }
 
+  /** From a place to another. */
+  lookAt(from: Vector3, to: Vector3): void {
+    this.controls.minDistance = 0.01;
+    this.controls.maxDistance = 1e3;
+    this.camera.near = 0.02;
+    this.camera.position.copy(from);
+    this.controls.target.copy(to);
+    this.controls.update();
+  }
+
   /** Goes with a body, which becomes the middle of the picture; -1: with none. */
   follow(body: number): void {
     const distance = this.camera.position.clone().sub(this.controls.target);
@@ -140,7 +150,7 @@ export class Stage {
     return views.find((v) => x >= v.x && x < v.x + v.width && y >= v.y && y < v.y + v.height) ?? views[0];
   }
 
-  private ray(x: number, y: number): Raycaster {
+  ray(x: number, y: number): Raycaster {
     const view = this.viewAt(x, y);
     const ray = new Raycaster();
     this.camera.aspect = view.width / view.height;

@@ -95,6 +95,17 @@ export class Viewer {
     this.choose(same >= 0 ? same : Math.max(0, bodies.findIndex((body) => body.moves === "free")));
   }
 
+  /** What is known by now of runs that go on, at their end. */
+  live(runs: Run[]): void {
+    const same = runs.length === this.runs.length && runs.every((run, i) => run.method === this.runs[i].method &&
+      run.bodies.length === this.runs[i].bodies.length && run.bodies.every((body, k) => body.name === this.runs[i].bodies[k].name));
+    if (!same) this.replace(runs, false);
+    this.runs = runs;
+    this.worlds.forEach((world, i) => world.renew(runs[i]));
+    this.player.load(runs);
+    this.player.seek(this.player.end);
+  }
+
   private texts(): void {
     const [run] = this.runs;
     document.title = `${run.title} – kairos`;
@@ -184,7 +195,7 @@ export class Viewer {
     this.dirty = true;
   }
 
-  private setSpeed(speed: number): void {
+  setSpeed(speed: number): void {
     const allowed = Number.isFinite(speed) && speed > 0 ? Math.min(1000, Math.max(1e-4, speed)) : 1;
     this.player.speed = Number(allowed.toPrecision(4));
     box("speed").value = String(this.player.speed);

@@ -52,8 +52,8 @@ const edges = corners.flatMap((a, i) =>
 
 export class World {
   readonly scene = new Scene();
-  readonly motions: Motions;
-  readonly contacts: Contacts;
+  motions: Motions;
+  contacts: Contacts;
   readonly states: State[];
   readonly centre = new Vector3();
   radius = 1;
@@ -66,7 +66,7 @@ export class World {
   private readonly trails = new FatLines(mostTrails * trailPoints, 2.5);
   private readonly shafts = new FatLines(2 * mostArrows, 3, true);
   private readonly heads: InstancedMesh;
-  private readonly largestImpulse: number;
+  private largestImpulse = 0;
   private readonly matrix = new Matrix4();
   private readonly p = new Vector3();
   private readonly q = new Quaternion();
@@ -74,7 +74,7 @@ export class World {
   private readonly colours: Record<"background" | "inside" | "normal" | "impulse" | "edge", Color>;
   private readonly movers: number[];
 
-  constructor(readonly run: Run, private readonly colour: Palette) {
+  constructor(public run: Run, private readonly colour: Palette) {
     this.motions = new Motions(run);
     this.contacts = new Contacts(run);
     this.states = run.bodies.map(newState);
@@ -94,12 +94,23 @@ export class World {
     this.heads.frustumCulled = false;
     this.heads.count = 0;
     this.scene.add(this.insides.object, this.trails.object, this.shafts.object, this.heads);
-    let largest = 0;
-    const v = run.events.vectors;
-    for (let e = 0; e < run.events.time.length; ++e) {
-      largest = Math.max(largest, Math.hypot(v[9 * e + 6], v[9 * e + 7], v[9 * e + 8]));
+    this.measureImpulses();
+  }
+
+  /** Another run of the same bodies: what was built for them stays. */
+  renew(run: Run): void {
+    this.run = run;
+    this.motions = new Motions(run);
+    this.contacts = new Contacts(run);
+    this.measureImpulses();
+  }
+
+  private measureImpulses(): void {
+    const v = this.run.events.vectors;
+    this.largestImpulse = 0;
+    for (let e = 0; e < this.run.events.time.length; ++e) {
+      this.largestImpulse = Math.max(this.largestImpulse, Math.hypot(v[9 * e + 6], v[9 * e + 7], v[9 * e + 8]));
     }
-    this.largestImpulse = largest;
   }
 
   /** The ball around what moves, and around what is fixed nearby; around the room, where there is one. */

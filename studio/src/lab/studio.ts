@@ -35,6 +35,8 @@ export class Studio {
   readonly editor: Editor;
   private readonly methods: Methods;
   private readonly panel: KeysPanel;
+  /** Whether the page shows scenes, and not another room. */
+  mine = true;
   private path = "/scenes/mine.toml";
   private later: Later[] | null = null;
   private refit = true;
@@ -130,11 +132,12 @@ export class Studio {
   }
 
   private async simulate(): Promise<void> {
+    if (!this.mine) return;
     const slow = window.setTimeout(() => { element("working").hidden = false; button("stop").hidden = false; }, 300);
     const by = this.later?.[0].time ?? 0;
     const outcome = await this.client.run(this.tasks());
     clearTimeout(slow);
-    if (!outcome) return;
+    if (!outcome || !this.mine) return;
     element("working").hidden = true;
     button("stop").hidden = true;
     this.outcome = outcome;
@@ -159,7 +162,7 @@ export class Studio {
     if (!this.viewer) {
       this.viewer = new Viewer(runs);
       new Drag(this.viewer.stage, {
-        tool: () => list("tool").value as Tool,
+        tool: () => (this.mine ? (list("tool").value as Tool) : "view"),
         take: (body) => this.take(body),
         deed: (body, deed) => this.deed(body, deed),
         done: () => this.editor.separate(),
@@ -185,7 +188,14 @@ export class Studio {
     return this.openText(name === "" ? emptyScene : this.files[path], path, name);
   }
 
-  private async openText(text: string, path: string, name: string): Promise<void> {
+  /** The scene again, after another room had the view. */
+  comeBack(): void {
+    this.mine = true;
+    this.refit = true;
+    this.changed(0);
+  }
+
+  async openText(text: string, path: string, name: string): Promise<void> {
     list("scene").value = name;
     this.path = path;
     this.later = null;
@@ -335,6 +345,7 @@ export class Studio {
 
   /** What the viewer has no key for: undo, and a chosen body by keys. */
   private key(event: KeyboardEvent): void {
+    if (!this.mine) return;
     const target = event.target as HTMLElement;
     const typing = target.isContentEditable || target instanceof HTMLInputElement && target.type === "text";
     if ((event.ctrlKey || event.metaKey) && !typing && ["z", "y"].includes(event.key.toLowerCase())) {
