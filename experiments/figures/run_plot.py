@@ -16,9 +16,11 @@ import numpy as np
 
 import style
 from methods import COLOURS, DASHES
+from run_instants import with_events
 
 MOST_BODIES = 6     # that are drawn where nobody says which
 MOST_RUNS = 6       # beside each other: more are too narrow to read
+INVISIBLE = 1e-3    # of the largest line of a ledger: what is less lies on the axis
 RUG_ABOVE = 60      # more events than this are ticks at the foot, not lines over the panel
 
 
@@ -35,7 +37,7 @@ class DrawnRun:
     velocity: np.ndarray
     orientation: np.ndarray
     ledger: dict        # columns of energy.csv
-    events: dict        # t, kind, a, b, gap
+    events: dict        # t, kind, a, b, gap; a_before_position, ... (events, 3)
 
 
 def read_run(folder, label=None):
@@ -57,7 +59,21 @@ def read_run(folder, label=None):
     scene, scheme = summary["scene"]["name"], summary["method"]["scheme"]
     return DrawnRun(label or f"{scene}, {scheme}", scheme, scene, bodies, rows["t"][::len(bodies)],
                     of("p"), of("v"), of("q", "wxyz"), ledger,
-                    {name: events[name] for name in ("t", "kind", "a", "b", "gap")})
+                    _vectors(events))
+
+
+def event_columns():
+    """Names of the vectors of an event that are drawn."""
+    return [f"{side}_{when}_{what}" for side in "ab" for when in ("before", "after")
+            for what in ("position", "velocity")]
+
+
+def _vectors(events):
+    found = {name: events[name] for name in ("t", "kind", "a", "b", "gap")}
+    for name in event_columns():
+        stem, what = name.rsplit("_", 1)
+        found[name] = np.stack([events[f"{stem}_{what[0]}{axis}"] for axis in "xyz"], axis=-1)
+    return found
 
 
 def _columns(path):
@@ -127,9 +143,16 @@ def _gap_of_boxes(a, p_a, q_a, b, p_b, q_b):
     return np.where(length > 1e-6, separation, -np.inf).max(axis=1)  # parallel edges say nothing
 
 
+def _is_known(body):
+    return body["shape"] in ("sphere", "box", "half-space")
+
+
 def gap_of(run, i, j):
-    """Gap of bodies i and j in each frame, m; negative: penetration. None: two planes."""
+    """Gap of bodies i and j in each frame, m; negative: penetration. None: two planes, or a shape
+    whose gap is not drawn."""
     a, b = run.bodies[i], run.bodies[j]
+    if not _is_known(a) or not _is_known(b):
+        return None
     (p_a, q_a), (p_b, q_b) = ((run.position[:, k], run.orientation[:, k]) for k in (i, j))
     if a["shape"] == "half-space":
         return None if b["shape"] == "half-space" else gap_of(run, j, i)
@@ -194,6 +217,8 @@ def _draw_ledger(panel, run):
     lines = [name for name in run.ledger
              if name not in ("frame", "t", "kinetic", "potential", "flow")
              and np.nanmax(np.abs(run.ledger[name])) > 1e-9 * scale]
+    most = max((np.nanmax(np.abs(run.ledger[name])) for name in lines), default=0.0)
+    lines = [name for name in lines if np.nanmax(np.abs(run.ledger[name])) > INVISIBLE * most]
     change = run.ledger["kinetic"] + run.ledger["potential"]
     panel.plot(run.ledger["t"], change - change[0], color="black", linewidth=2.2, alpha=0.35,
                label="change of energy")
@@ -221,18 +246,21 @@ def figure_of(runs, bodies=None):
     rows = (("x / m", "height / m", "z / m")[axis], "gap to the nearest / m", "speed / (m/s)", "energy ledger / J")
     for column, run in enumerate(runs):
         chosen = _chosen(run, bodies)
+        run = with_events(run)
         gaps = {i: least_gap(run, i) for i in chosen}
         height, gap, speed, ledger = panels[:, column]
         _draw_bodies(height, run, chosen, lambda i: run.position[:, i, axis])
         _draw_bodies(gap, run, chosen, gaps.get)
         gap.axhline(0, color="black", linewidth=0.8)
-        for i in chosen:
-            if gaps[i] is not None:
-                gap.fill_between(run.times, np.minimum(gaps[i], 0), 0, color="#EE6677", alpha=0.35,
-                                 linewidth=0)
+        depths = [np.minimum(gaps[i], 0) for i in chosen if gaps[i] is not None]
+        if depths:
+            gap.fill_between(run.times, np.min(depths, axis=0), 0, color="#EE6677", alpha=0.35,
+                             linewidth=0)
         _draw_bodies(speed, run, chosen, lambda i: np.linalg.norm(run.velocity[:, i], axis=1))
         _draw_ledger(ledger, run)
-        height.set_title(run.title)
+        more = sum(body["moves"] != "fixed" for body in run.bodies) - len(chosen)
+        height.set_title(run.title + (f" ({len(chosen)} bodies, {more} more not drawn)"
+                                      if more > 0 and not bodies else ""))
         ledger.set_xlabel("t / s")
         height.legend(loc="best")
         ledger.legend(loc="best")

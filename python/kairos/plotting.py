@@ -39,7 +39,8 @@ def _as_drawn(run, label):
         scheme=method["scheme"], scene=run.summary["scene"], bodies=run.shapes, times=run.times,
         position=run.position, velocity=run.velocity, orientation=run.orientation,
         ledger={name: ledger[name] for name in ledger.dtype.names},
-        events={name: events[name] for name in ("t", "kind", "a", "b", "gap")})
+        events={name: events[name] for name in ("t", "kind", "a", "b", "gap",
+                                                *_script().event_columns())})
 
 
 def plot(*runs, labels=None, bodies=None):

@@ -30,6 +30,22 @@ def test_the_command_draws_what_the_package_draws(program, tmp_path):
                                   equal_nan=True)
 
 
+def test_lines_go_through_the_impacts_between_frames():
+    run = kairos.run("bounce", duration=3)
+    height, gap, speed, _ = kairos.plot(run).axes
+    impacts = run.events["t"][run.events["kind"] == "impact"]
+    assert len(impacts) == 2 and not np.isin(impacts, run.times).any()
+    for t in impacts:
+        at, = np.nonzero(gap.lines[0].get_xdata() == t)
+        assert len(at) == 2  # before and after
+        assert np.all(np.abs(gap.lines[0].get_ydata()[at]) < 1e-9)  # the tolerance, of 0.5 m
+    # Each instant of the line is where the run was: cubics are exact for a parabola.
+    t = np.asarray(height.lines[0].get_xdata())
+    assert np.allclose(height.lines[0].get_ydata(), run.sample(t, "ball").position[:, 1], atol=1e-12)
+    assert np.allclose(speed.lines[0].get_ydata(),
+                       np.abs(run.sample(t, "ball").velocity[:, 1]), atol=1e-11)
+
+
 def test_without_out_the_picture_lies_with_the_run(program, tmp_path):
     folder, = runs_of(program, tmp_path, ["bounce"])
     program("plot", folder)
