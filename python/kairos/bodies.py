@@ -38,8 +38,8 @@ class Bodies:
     shape: "box", "sphere", "half-space", or a list of n of these.
     size (3,) or (n, 3): half-extents (m); radius and two numbers that do not count; outward normal.
     position (m), velocity (m/s), acceleration (m/s^2), angular_velocity (rad/s): (3,) or (n, 3);
-    orientation (4,) or (n, 4): unit quaternion, body to world, w first.
-        p(t) = position + velocity t + acceleration t^2/2, turning at the constant rate.
+    orientation (4,) or (n, 4): unit quaternion, body to world, w first. Bodies move on
+    position + velocity t + acceleration t^2/2 and turn at the constant rate.
     motion: instead of these a `Motion`, or a list of n.
     What is given once stands for all n. `boxes`, `spheres` and `half_spaces` are shorter.
 

@@ -3,9 +3,43 @@
 from __future__ import annotations
 
 import csv
+import itertools
 import os
 
 import numpy as np
+
+
+def _are_numbers(texts):
+    try:
+        for text in texts:
+            if text:
+                float(text)
+    except ValueError:
+        return False
+    return True
+
+
+class _ColumnFile:
+    """A column that grows, in a file that appears whole: `numpy.save` of an array too large for
+    memory."""
+
+    def __init__(self, path, kind, count):
+        self._path, self._kind = path, kind
+        self._file = open(path + ".part", "wb")
+        np.lib.format.write_array_header_1_0(
+            self._file, {"descr": np.lib.format.dtype_to_descr(kind), "fortran_order": False,
+                         "shape": (count,)})
+
+    def add(self, texts):
+        if self._kind.kind == "S":
+            values = [text.encode() for text in texts]
+        else:
+            values = [float(text) if text else np.nan for text in texts]
+        self._file.write(np.array(values, dtype=self._kind).tobytes())
+
+    def finish(self):
+        self._file.close()
+        os.replace(self._path + ".part", self._path)
 
 
 class Table:
@@ -53,7 +87,7 @@ class Table:
         import pyarrow
         import pyarrow.csv
         import pyarrow.parquet
-        numbers = self._numeric_columns()
+        _, _, numbers = self._shape()
         types = {name: pyarrow.float64() if name in numbers else pyarrow.string()
                  for name in self.columns}
         reader = pyarrow.csv.open_csv(
@@ -64,17 +98,42 @@ class Table:
                 writer.write_batch(batch, row_group_size=rows_at_once)
         return path
 
-    def _numeric_columns(self):
-        """Columns that hold nothing but numbers and empty cells, looked at row by row."""
-        numeric = set(self.columns)
-        for row in self.rows():
-            for name in list(numeric):
-                if row[name]:
-                    try:
-                        float(row[name])
-                    except ValueError:
-                        numeric.discard(name)
-        return numeric
+    def to_npy(self, folder):
+        """Writes the table as one file per column, NAME.npy, row by row, in constant memory: numbers
+        as doubles with the bits of the CSV (an empty cell is nan), text as bytes (UTF-8) of its
+        greatest length. Needs numpy alone, where no Parquet is: `np.load(path, mmap_mode="r")` reads
+        a column without the others. Returns the paths by column."""
+        folder = os.fspath(folder)
+        os.makedirs(folder, exist_ok=True)
+        count, widths, numbers = self._shape()
+        paths, columns = {}, {}
+        for place, name in enumerate(self.columns):
+            kind = np.dtype(float) if name in numbers else np.dtype(f"S{max(1, widths[place])}")
+            paths[name] = os.path.join(folder, name + ".npy")
+            columns[place] = _ColumnFile(paths[name], kind, count)
+        with open(self.path, newline="", encoding="utf-8") as file:
+            reader = csv.reader(file)
+            next(reader)
+            while rows := list(itertools.islice(reader, 10_000)):
+                for place, texts in enumerate(zip(*rows)):
+                    columns[place].add(texts)
+        for column in columns.values():
+            column.finish()
+        return paths
+
+    def _shape(self):
+        """Rows, the longest text of each column in bytes, names of columns that are numbers."""
+        count, widths, numbers = 0, [0] * len(self.columns), set(range(len(self.columns)))
+        with open(self.path, newline="", encoding="utf-8") as file:
+            reader = csv.reader(file)
+            next(reader)
+            while rows := list(itertools.islice(reader, 10_000)):
+                count += len(rows)
+                for place, texts in enumerate(zip(*rows)):
+                    if place in numbers and not _are_numbers(texts):
+                        numbers.discard(place)
+                    widths[place] = max(widths[place], max(len(text.encode()) for text in texts))
+        return count, widths, {self.columns[place] for place in numbers}
 
     def __repr__(self):
         return f"<kairos.Table {self.path}: {', '.join(self.columns)}>"

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import threading
 import time
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -87,6 +88,39 @@ def test_a_table_becomes_a_data_frame_and_parquet(program, spec, tmp_path):
     pytest.importorskip("pyarrow", reason="no pyarrow: Parquet is not tried")
     back = pandas.read_parquet(sweep.runs.to_parquet(tmp_path / "runs.parquet"))
     assert np.array_equal(back["max_penetration"].to_numpy(), sweep.runs["max_penetration"])
+
+
+def test_a_table_becomes_columns_that_numpy_maps(program, spec, tmp_path):
+    sweep = kairos.sweep(spec, out=tmp_path / "out")
+    paths = sweep.runs.to_npy(tmp_path / "columns")
+    assert list(paths) == sweep.runs.columns
+    for name, path in paths.items():
+        column = np.load(path, mmap_mode="r")
+        wanted = sweep.runs[name]
+        if wanted.dtype == float:
+            assert column.dtype == float and np.array_equal(column, wanted, equal_nan=True), name
+        else:
+            assert column.dtype.kind == "S" and np.array_equal(column, np.char.encode(wanted)), name
+    assert len(os.listdir(tmp_path / "columns")) == len(paths)
+
+
+def test_columns_of_a_long_table_take_no_memory(tmp_path):
+    """300,000 rows, 30 MB of text, within 8 MB: blocks of 10,000 rows."""
+    path = tmp_path / "long.csv"
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("run,method,x,gap\n")
+        for i in range(300_000):
+            gap = '' if i % 3 else repr(i / 11)
+            file.write(f"{i},{'é' * (i % 7)},{i / 7!r},{gap}\n")
+    tracemalloc.start()
+    paths = kairos.Table(path).to_npy(tmp_path / "columns")
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 8e6, most
+    runs = np.arange(300_000)
+    assert np.array_equal(np.load(paths["x"]), runs / 7)
+    assert np.array_equal(np.load(paths["gap"]), np.where(runs % 3, np.nan, runs / 11), equal_nan=True)
+    assert np.load(paths["method"])[6].decode() == "éééééé"
 
 
 def test_tradeoff_and_recommend_take_a_scene_built_here(program):
