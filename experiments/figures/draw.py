@@ -8,6 +8,8 @@ captions in figures.csv.
 import importlib
 import sys
 
+import matplotlib
+
 import data
 import style
 
@@ -16,6 +18,7 @@ def main(arguments):
     if len(arguments) != 2:
         sys.exit(__doc__)
     script, folder = arguments
+    matplotlib.use("Agg")
     style.use()
     figures = style.Figures(folder)
     importlib.import_module(script.replace("-", "_")).draw(data.Experiment(folder), figures)

@@ -12,6 +12,7 @@ import json
 import os
 import sys
 
+import matplotlib
 import numpy as np
 
 import style
@@ -279,6 +280,7 @@ def main(arguments):
     if len(arguments) < 2:
         sys.exit(__doc__)
     out, folders = arguments[0], arguments[1:]
+    matplotlib.use("Agg")  # here alone: who draws from Python has a screen of their own
     figure = figure_of([read_run(folder) for folder in folders], bodies)
     kind = os.path.splitext(out)[1].lstrip(".")
     metadata = {"svg": {"Date": None}, "png": {"Software": None},

@@ -5,11 +5,9 @@ import csv
 import os
 
 import matplotlib
+import matplotlib.pyplot as plt
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend is chosen first)
-
-from methods import (  # noqa: E402,F401  (figures ask style for all)
+from methods import (  # noqa: F401  (figures ask style for all)
     COLOURS, DASHES, MARKERS, by_place, look, scheme_of)
 
 PREDICTION = {"color": "black", "linestyle": (0, (1, 1)), "linewidth": 1.1, "zorder": 5}

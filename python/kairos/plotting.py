@@ -54,4 +54,6 @@ def plot(*runs, labels=None, bodies=None):
     labels = labels or [None] * len(runs)
     drawn = [_as_drawn(run, label) if isinstance(run, Run) else script.read_run(os.fspath(run), label)
              for run, label in zip(runs, labels)]
-    return script.figure_of(drawn, np.atleast_1d(bodies).tolist() if bodies is not None else None)
+    import matplotlib
+    with matplotlib.rc_context():  # the figure has the report's style, the session keeps its own
+        return script.figure_of(drawn, np.atleast_1d(bodies).tolist() if bodies is not None else None)

@@ -35,7 +35,8 @@ class Scene:
     (scenes/README.md), as keywords. Nothing is checked before `check`, `explain` or `kairos.run`,
     which raise `InputError` with the key: `body.ball.radius`.
 
-        Scene("drop", duration=2.0).wall("floor", shape="half-space").ball("ball", radius=0.1, ...)
+        scene = Scene("drop", duration=2.0).wall("floor", shape="half-space")
+        scene.ball("ball", radius=0.1, mass=1, position=(0, 5, 0))
 
     Every entity of the library is a method: `wall`, `ball`, `conveyor`, `bat`, ... (see `entities`).
     A `drive` may be a callable `(t, at_most) -> kairos.Motion` that holds t, or a `kairos.Spline`.
@@ -79,7 +80,8 @@ class Scene:
 
         kind: "spring", "quadratic-drag", ... or a callable `f(t, states)` that returns newtons.
         bodies: a name: arrays are (3,), and f returns (3,); or a list of n names, which the force
-        couples: (n, 3). potential: `u(t, states)` -> J; it then tells the whole work of the force.
+            couples: (n, 3).
+        potential: `u(t, states)` -> J; it then tells the whole work of the force.
         rotation: f returns (force, torque), N and N m, both of that shape.
         """
         if not callable(kind):
@@ -134,8 +136,9 @@ def _entity_method(row):
     def add(self, name: str, **body_keys):
         return self.body(name, entity=row["kind"], **body_keys)
 
+    article = "An" if row["kind"][0] in "aeiou" else "A"
     add.__name__ = row["kind"].replace("-", "_")
-    add.__doc__ = f"A {row['kind']}: {row['summary']}." + (f" Own keys: {keys}." if keys else "")
+    add.__doc__ = f"{article} {row['kind']}: {row['summary']}." + (f" Own keys: {keys}." if keys else "")
     return add
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import kairos
+from kairos import plotting
 
 matplotlib = pytest.importorskip("matplotlib")
 
@@ -18,8 +19,12 @@ def test_the_command_draws_what_the_package_draws(program, tmp_path):
     folders = runs_of(program, tmp_path, ["bounce", "spinning-box"])
     said = program("plot", *folders, "--out", tmp_path / "two.svg").stdout.strip()
     assert said == str(tmp_path / "two.svg")
+    before = dict(matplotlib.rcParams), matplotlib.get_backend()
     figure = kairos.plot(*folders)
-    figure.savefig(tmp_path / "package.svg", metadata={"Date": None})
+    assert (dict(matplotlib.rcParams), matplotlib.get_backend()) == before  # the session's own
+    with matplotlib.rc_context():
+        plotting._script().style.use()
+        figure.savefig(tmp_path / "package.svg", metadata={"Date": None}, facecolor="white")
     assert (tmp_path / "two.svg").read_bytes() == (tmp_path / "package.svg").read_bytes()
     # A run in memory is the same lines as its files.
     in_memory = kairos.plot(*[kairos.run(name, duration=1) for name in ("bounce", "spinning-box")])
@@ -54,7 +59,6 @@ def test_without_out_the_picture_lies_with_the_run(program, tmp_path):
 
 def test_gaps_of_pictures_are_the_gaps_of_the_library():
     """Boxes, balls and planes: against kairos.distance, at the frames of a run."""
-    from kairos import plotting
     scene = kairos.Scene("all", duration=0.5, G=0.0)
     scene.wall("floor", shape="half-space")
     scene.ball("ball", radius=0.2, mass=1, position=(0, 2, 0), velocity=(1, -1, 0))
