@@ -1,4 +1,5 @@
 #include "ccd/advancement.hpp"
+#include "ccd/common_point.hpp"
 #include "ccd/pair_motion.hpp"
 #include "ccd/roundoff.hpp"
 #include "ccd/separation_function.hpp"
@@ -24,6 +25,7 @@ double safely_inside(PairKind kind, const PairMotion& motion, const Kinematics& 
     } else {
       const double speed = motion.speed_bound(k, bounds, horizon);
       safe = speed > 0.0 ? depth / speed : horizon;
+      safe = std::max(safe, common_point(kind, motion, k, bounds, witness, horizon));
     }
     if (!(safe < 0.25 * horizon) || !(depth > 0.0)) {
       return std::min(safe, horizon);

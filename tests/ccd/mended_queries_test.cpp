@@ -168,6 +168,35 @@ TEST_CASE("mended: a half-space that turns carries what is far from its origin",
   CHECK(toi.t_hi == Approx(0.1).epsilon(1e-3));  // sin and cos of 1e-4 rad
 }
 
+TEST_CASE("mended: boxes that slide a little inside each other are followed until they part",
+          "[ccd][mended]") {
+  // 50 nm deep, sliding at 1 or 2 m/s: depth over speed would take steps of 25 or 50 ns. Looks are
+  // counted: a few for each face that is crossed, and some twenty to the tolerance.
+  constexpr double depth = 50e-9;
+  const auto slides = [](const Query& q, double parts_at) {
+    const TimeOfImpact toi =
+        certified->time_of_separation(q.moving_a(), q.moving_b(), q.window(), 0.0);
+    CAPTURE(toi.evaluations, toi.t_lo, toi.t_hi);
+    REQUIRE(toi.status == ToiStatus::impact);
+    CHECK(toi.evaluations < 200);
+    CHECK(q.separation(toi.t_lo) <= 1e-9);  // the tolerance
+    CHECK(q.separation(toi.t_hi) > 0);
+    CHECK(toi.t_hi == Approx(parts_at).epsilon(1e-6));
+  };
+  const Query flat{box(0.5, 0.5, 0.5), box(0.5, 0.5, 0.5), still(pose(zero)),
+                   moving(pose({0, 1 - depth, 0}), {2, 0, 0}), 1.0};
+  slides(flat, 0.5);
+  // Edge over edge at right angles: each slides along itself and across the other.
+  const double edge = 0.5 * std::sqrt(2.0);
+  const Query crossed{
+      box(0.5, 0.5, 0.5), box(0.5, 0.5, 0.5), still(pose(zero, turned({0, 0, 1}, pi / 4))),
+      moving(pose({0, 2 * edge - depth, 0}, turned({1, 0, 0}, pi / 4)), {0.6, 0, 0.8}), 1.0};
+  slides(crossed, 0.625);  // where b's edge ends, at z = 0.5
+  const Query ball{Sphere{0.25}, box(0.5, 0.5, 0.5), moving(pose({0, 0.75 - depth, 0}), {-2, 0, 0}),
+                   still(pose(zero)), 1.0};
+  slides(ball, 0.25 + std::sqrt(0.5 * 0.25 * depth));  // over the rim
+}
+
 TEST_CASE("mended: what is no query is refused", "[ccd][mended]") {
   const Motion still_a = still(pose(zero));
   const Motion falling = moving(pose({0, 3, 0}), {0, -2, 0});
