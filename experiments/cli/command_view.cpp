@@ -5,12 +5,12 @@
 #include "experiments/named_method.hpp"
 #include "experiments/output/atomic_file.hpp"
 #include "experiments/run_error.hpp"
+#include "experiments/view/simulated_view.hpp"
 #include "experiments/view/view_files.hpp"
 #include "experiments/view/viewer_template.hpp"
 #include "simulation/option.hpp"
 #include "simulation/registry.hpp"
 #include "simulation/view/view_page.hpp"
-#include "simulation/view/view_recorder.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -24,11 +24,6 @@
 
 namespace kairos::experiments {
 namespace {
-
-std::string method_text(const MethodChoice& method) {
-  return fmt::format("{} + {} + {} + {}", method.scheme, method.integrator, method.detector,
-                     method.impact);
-}
 
 std::vector<std::string> words_of(const std::string& text) {
   std::vector<std::string> words{""};
@@ -75,14 +70,11 @@ struct ViewCommand {
 };
 
 ViewRun simulated(const Model& model, const RunChoice& choice) {
-  ViewRecorder recorder;
-  const RunResult result = simulate(model, choice, recorder);
-  ViewRun run = std::move(recorder).finish();
-  run.method = method_text(choice.method);
-  if (result.status == RunStatus::stopped) {
-    run.reason = result.reason;
+  ViewRun run = simulated_view(model, choice);
+  if (!run.reason.empty()) {
     fmt::print(stderr, "{}: {}: stopped at t = {} s: {}; the page shows it up to there\n",
-               model.scene().path, run.method, result.end.seconds, result.reason);
+               model.scene().path, run.method,
+               run.frame_times.empty() ? 0.0 : run.frame_times.back(), run.reason);
   }
   return run;
 }

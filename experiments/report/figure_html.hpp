@@ -18,4 +18,8 @@ namespace kairos::experiments {
 [[nodiscard]] std::string figure_html(const ReportEntry& entry, std::size_t drawing,
                                       const std::string& label);
 
+/// A link to it, with its caption, where a text speaks of a figure that stands elsewhere.
+[[nodiscard]] std::string figure_reference(const ReportEntry& entry, std::size_t drawing,
+                                           const std::string& label);
+
 }  // namespace kairos::experiments

@@ -147,7 +147,7 @@ class PaperFiller {
     std::string out;
     for (std::size_t i = 0; entry != nullptr && i < entry->figures.size(); ++i) {
       if (parts.size() == 1 || entry->figures[i].first == parts[1]) {
-        out += figure_html(*entry, i, figure_label(entries_, *entry, i));
+        out += figure_reference(*entry, i, figure_label(entries_, *entry, i));
       }
     }
     return out;

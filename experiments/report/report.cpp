@@ -2,12 +2,13 @@
 
 #include "core/error.hpp"
 #include "experiments/data_folders.hpp"
-#include "experiments/output/atomic_file.hpp"
 #include "experiments/report/figure_html.hpp"
+#include "experiments/report/live_view.hpp"
 #include "experiments/report/markdown.hpp"
 #include "experiments/report/paper.hpp"
 #include "experiments/report/report_entry.hpp"
 #include "experiments/report/report_html.hpp"
+#include "experiments/report/report_site.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
 
 #include <fmt/format.h>
@@ -16,6 +17,8 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace kairos::experiments {
@@ -46,9 +49,15 @@ std::string files_html(const ReportEntry& entry) {
   return out + "</ul>\n";
 }
 
+/// Details that a reader opens.
+std::string folded(const char* title, const std::string& inside) {
+  return inside.empty()
+             ? ""
+             : fmt::format("<details><summary>{}</summary>\n{}</details>\n", title, inside);
+}
+
 std::string facts_html(const ReportEntry& entry) {
-  std::string out = fmt::format("<h3>To repeat it</h3>\n<pre><code>{}</code></pre>\n",
-                                html(entry.entry("command")));
+  std::string out = fmt::format("<pre><code>{}</code></pre>\n", html(entry.entry("command")));
   out += "<dl class=\"facts\">";
   for (const std::string& sweep : entry.sweeps()) {
     out += fmt::format("<dt>{}</dt><dd>scene {}, seed {}, {} repeat{} a point</dd>", html(sweep),
@@ -56,7 +65,7 @@ std::string facts_html(const ReportEntry& entry) {
                        html(entry.entry("repeats:" + sweep)),
                        entry.entry("repeats:" + sweep) == "1" ? "" : "s");
   }
-  return out + "</dl>\n" + files_html(entry);
+  return folded("To repeat it", out + "</dl>\n" + files_html(entry));
 }
 
 /// The tables that an experiment which is no sweep wants to be seen.
@@ -69,17 +78,17 @@ std::string shown_tables_html(const ReportEntry& entry) {
                          csv_table_html(entry.folder + "/" + name + ".csv"));
     }
   }
-  return out.empty() ? "" : "<h3>The numbers</h3>\n" + out;
+  return folded("The numbers", out);
 }
 
 std::string tables_html(const ReportEntry& entry) {
   if (entry.sweeps().empty()) {
     return shown_tables_html(entry);
   }
-  std::string out = "<h3>The numbers</h3>\n";
   if (entry.name == "overview") {
-    return out + overview_html(entry.folder, entry.sweeps());
+    return folded("The numbers", overview_html(entry.folder, entry.sweeps()));
   }
+  std::string out;
   for (const std::string& sweep : entry.sweeps()) {
     const std::string table = summary_html(entry.folder, sweep, inline_rows);
     const std::string link = fmt::format("<a href=\"{0}/{1}_summary.csv\">{1}_summary.csv</a>",
@@ -90,7 +99,7 @@ std::string tables_html(const ReportEntry& entry) {
                : fmt::format("<p class=\"note\">{}, all digits in {}</p>\n{}", html(sweep), link,
                              table);
   }
-  return out;
+  return folded("The numbers", out);
 }
 
 std::string figures_html(const Entries& entries, const ReportEntry& entry) {
@@ -111,22 +120,22 @@ std::string thesis_figure_html(const Entries& entries, const ReportEntry& entry)
                                 html(entry.name), html(entry.entry("title")));
   out += paragraph("asks", entry.entry("asks"));
   out += paragraph("how", entry.entry("how"));
-  out += figures_html(entries, entry);
-  return out + paragraph("finding", entry.entry("finding")) + "</article>\n";
+  out += paragraph("finding", entry.entry("finding"));
+  return out + figures_html(entries, entry) + live_html(entry) + "</article>\n";
 }
 
 std::string experiment_html(const Entries& entries, const ReportEntry& entry) {
   std::string out =
-      fmt::format("<section id=\"{}\"><h2>{}</h2>\n", html(entry.name), html(entry.entry("title")));
+      fmt::format("<section id=\"{}\"><h1>{}</h1>\n", html(entry.name), html(entry.entry("title")));
   out += paragraph("asks", entry.entry("asks"));
-  out += paragraph("how", entry.entry("how"));
-  out += figures_html(entries, entry);
   out += paragraph("finding", entry.entry("finding"));
+  out += figures_html(entries, entry) + live_html(entry);
+  out += folded("How it is done", paragraph("how", entry.entry("how")));
   return out + tables_html(entry) + facts_html(entry) + "</section>\n";
 }
 
 std::string errata_section_html(const ReportEntry& entry) {
-  std::string out = fmt::format("<section id=\"errata\"><h2>{}</h2>\n", html(entry.entry("title")));
+  std::string out = fmt::format("<section id=\"errata\"><h1>{}</h1>\n", html(entry.entry("title")));
   out += paragraph("asks", entry.entry("asks"));
   out += paragraph("how", entry.entry("how"));
   out += paragraph("finding", entry.entry("finding"));
@@ -134,8 +143,7 @@ std::string errata_section_html(const ReportEntry& entry) {
   for (const auto& [table, heading] : {std::pair{"corrected", "First readings that runs refuted"},
                                        {"contradictions", "Contradictions within the thesis"},
                                        {"undecided", "Claims that no run here decides"}}) {
-    out += fmt::format("<h3>{}</h3>\n{}", heading,
-                       csv_table_html(fmt::format("{}/{}.csv", entry.folder, table)));
+    out += folded(heading, csv_table_html(fmt::format("{}/{}.csv", entry.folder, table)));
   }
   return out + facts_html(entry) + "</section>\n";
 }
@@ -150,56 +158,74 @@ std::string versions_html(const ReportEntry& entry) {
   return out;
 }
 
-/// The page in the order of reading: its text and its contents grow together.
-class Page {
- public:
-  explicit Page(const Entries& entries) : entries_(entries), paper_(fill_paper(entries)) {}
+/// What a reader wants to know first, energy before all else, and the entry that shows it.
+struct Headline {
+  std::string_view entry;
+  std::string_view says;
+};
+constexpr Headline headlines[] = {
+    {"energy-drift",
+     "Balls gain energy because each step moves them with the acceleration of the step before: "
+     "G²h²/(2m) more in every frame, whatever the bounces. Floating point has no part in it."},
+    {"penetration",
+     "A ball passes a wall with probability 1 − (w + 2r)/(v h), from the speed on at which a frame "
+     "is longer than wall and ball."},
+    {"bat",
+     "Looked at once a frame, a bat passes through a ball as its swing gets faster, although the "
+     "ball hardly moves."},
+    {"substeps",
+     "Cutting a frame where something moves too far (fig. 15) catches fast balls and lets slow "
+     "ones through: at some speeds it is worse than what it cures."},
+    {"order",
+     "Where impacts are not located every integrator is of order 1; on the dense output each keeps "
+     "the order it was built with."},
+    {"tradeoff",
+     "Once a frame, sixteen times the frames buy one digit, whatever the integrator; from impact "
+     "to impact the same work is a thousand times nearer."},
+    {"real-time", "Frames that come late do not concern event-driven: it draws what it knows."},
+    {"extremes",
+     "From impact to impact, with a detector that locates, nothing is wrong in silence: what "
+     "cannot be done is said."},
+};
 
-  std::string write() {
+class Pages {
+ public:
+  explicit Pages(const Entries& entries) : entries_(entries), paper_(fill_paper(entries)) {}
+
+  std::vector<SitePage> all() {
+    pages_.push_back({"index.html", "Findings", "", "", first_page()});
     add_thesis();
-    add_experiments();
+    for (const ReportEntry& entry : entries_) {
+      if (!entry.of_thesis) {
+        pages_.push_back({entry.name + ".html", entry.entry("title"), "Experiments", "",
+                          experiment_html(entries_, entry)});
+      }
+    }
     add_paper();
-    std::string out = fmt::format(
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-        "<title>kairos: what happens between two frames</title>\n"
-        "<link rel=\"icon\" href=\"data:,\">\n<style>\n{}</style></head>\n"
-        "<body id=\"top\"><div class=\"layout\">\n"
-        "<nav><a class=\"name\" href=\"#top\">kairos</a><p>What happens between two frames</p>"
-        "<ol>{}</ol></nav>\n<main>\n",
-        style_sheet(), contents_);
-    out +=
-        "<h1>What happens between two frames, and what does it cost to know?</h1>\n"
-        "<p class=\"lead\">A world that is stepped once a rendered frame misses what happens in "
-        "between: balls sink into walls, go through them, and gain energy. Here is that stepping, "
-        "as Dembovsky’s thesis of 1999 describes it, chapter by chapter, measured beside its "
-        "cures.</p>\n";
-    out += body_;
-    out += fmt::format(
-        "<footer>{} size. {}. Every number on this page comes from the linked tables; "
-        "the same commands on the same machine and toolchain give the same bytes "
-        "(timings apart).</footer>\n",
-        entries_.front().entry("size") == "full" ? "Full" : "Quick",
-        versions_html(entries_.front()));
-    return out + "</main></div></body></html>\n";
+    return std::move(pages_);
   }
   [[nodiscard]] const std::vector<std::string>& holes() const { return paper_.holes; }
 
  private:
-  void add_group(const char* title) {
-    contents_ += fmt::format("<li class=\"group\">{}</li>", title);
-  }
-  void add_contents(const std::string& id, const std::string& title, const char* look = "") {
-    contents_ += fmt::format("<li{}><a href=\"#{}\">{}</a></li>", look, html(id), html(title));
+  [[nodiscard]] std::string first_page() const {
+    std::string out =
+        "<h1>What happens between two frames, and what does it cost to know?</h1>\n"
+        "<p class=\"lead\">A world that is stepped once a rendered frame misses what happens in "
+        "between: balls sink into walls, go through them, and gain energy. Here is that stepping, "
+        "as Dembovsky’s thesis of 1999 describes it, measured beside its cures.</p>\n"
+        "<ol class=\"findings\">\n";
+    for (const Headline& headline : headlines) {
+      for (const ReportEntry& entry : entries_) {
+        if (entry.name == headline.entry) {
+          out += fmt::format("<li><a href=\"#{}\">{}</a> {}</li>\n", html(entry.name),
+                             html(entry.entry("title")), html(std::string(headline.says)));
+        }
+      }
+    }
+    return out + "</ol>\n";
   }
 
   void add_thesis() {
-    const bool any = std::any_of(entries_.begin(), entries_.end(),
-                                 [](const ReportEntry& entry) { return entry.of_thesis; });
-    if (!any) {
-      return;
-    }
-    add_group("The thesis, again");
     for (const ThesisChapter& chapter : thesis_chapters()) {
       std::string inside;
       std::string below;
@@ -212,15 +238,15 @@ class Page {
       if (!inside.empty()) {
         const std::string id = fmt::format("chapter-{}", chapter.number);
         const std::string title = fmt::format("{} {}", chapter.number, chapter.title);
-        add_contents(id, title);
-        contents_ += fmt::format("<li class=\"below\">{}</li>", below);
-        body_ += fmt::format("<section id=\"{}\"><h2>{}</h2>\n{}</section>\n", id, title, inside);
+        pages_.push_back(
+            {id + ".html", title, "The thesis, again", below,
+             fmt::format("<section id=\"{}\"><h1>{}</h1>\n{}</section>\n", id, title, inside)});
       }
     }
     for (const ReportEntry& entry : entries_) {
       if (entry.name == "errata") {
-        add_contents(entry.name, "Errata");
-        body_ += errata_section_html(entry);
+        pages_.push_back(
+            {"errata.html", "Errata", "The thesis, again", "", errata_section_html(entry)});
       }
     }
   }
@@ -230,43 +256,42 @@ class Page {
                                          : html(entry.name);
   }
 
-  void add_experiments() {
-    bool first = true;
-    for (const ReportEntry& entry : entries_) {
-      if (!entry.of_thesis) {
-        if (first) {
-          add_group("Experiments");
-          first = false;
-        }
-        add_contents(entry.name, entry.entry("title"));
-        body_ += experiment_html(entries_, entry);
-      }
-    }
-  }
-
+  /// A page for each part of the paper, and one for what it cites.
   void add_paper() {
-    if (paper_.page.html.empty()) {
+    const std::string& text = paper_.page.html;
+    if (text.empty()) {
       return;
     }
-    add_group("The paper");
-    add_contents("paper", paper_.title);
-    for (const MarkdownHeading& heading : paper_.page.headings) {
-      if (heading.level == 2) {
-        add_contents(heading.id, heading.text, " class=\"deeper\"");
+    const auto add = [this](const std::string& file, const std::string& title,
+                            const std::string& inside) {
+      pages_.push_back({file, title, "The paper", "",
+                        fmt::format("<section class=\"paper\">{}</section>\n", inside)});
+    };
+    std::size_t from = 0;
+    std::string file = "paper.html";
+    std::string title = paper_.title;
+    std::string heading = fmt::format("<h1 id=\"paper\">{}</h1>\n", html(paper_.title));
+    for (const MarkdownHeading& part : paper_.page.headings) {
+      const std::size_t at = text.find(fmt::format("<h3 id=\"{}\"", part.id), from);
+      if (part.level != 2 || at == std::string::npos) {
+        continue;
       }
+      if (at > from || !heading.empty()) {
+        add(file, title, heading + text.substr(from, at - from));
+      }
+      heading.clear();
+      from = at;
+      file = part.id + ".html";
+      title = part.text;
     }
-    add_contents("references", "References", " class=\"deeper\"");
-    body_ += fmt::format(
-        "<section id=\"paper\" class=\"paper\"><h2>{}</h2>\n{}<h3 "
-        "id=\"references\">References</h3>\n"
-        "{}</section>\n",
-        html(paper_.title), paper_.page.html, paper_.references);
+    add(file, title, heading + text.substr(from));
+    add("references.html", "References",
+        "<h1 id=\"references\">References</h1>\n" + paper_.references);
   }
 
   const Entries& entries_;
   Paper paper_;
-  std::string contents_;
-  std::string body_;
+  std::vector<SitePage> pages_;
 };
 
 }  // namespace
@@ -276,10 +301,15 @@ Report write_report(const std::string& folder) {
   if (entries.empty()) {
     throw InputError(folder, 0, "", "holds no experiment; run one with --out inside it first");
   }
-  const std::string path = (fs::path(folder) / "index.html").string();
-  Page page(entries);
-  write_file(path, page.write());
-  return {path, page.holes()};
+  write_live_views(folder, entries);
+  Pages pages(entries);
+  const std::string size = entries.front().entry("size") == "full" ? "Full" : "Quick";
+  const std::string footer = fmt::format(
+      "{} size. {}. Every number of this report comes from the linked tables; the same commands on "
+      "the same machine and toolchain give the same bytes (timings apart).",
+      size, versions_html(entries.front()));
+  write_site(folder, pages.all(), {style_sheet(), footer});
+  return {(fs::path(folder) / "index.html").string(), pages.holes()};
 }
 
 }  // namespace kairos::experiments

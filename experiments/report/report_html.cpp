@@ -19,18 +19,25 @@ std::string path_of(const std::string& folder, const std::string& sweep, const c
   return (fs::path(folder) / (sweep + kind)).string();
 }
 
-std::string data_cell(const std::string& cell, const char* more = "") {
+/// A column's name as a reader sees it.
+std::string words(const std::string& column) {
+  std::string out = html(column);
+  std::replace(out.begin(), out.end(), '_', ' ');
+  return out;
+}
+
+/// `label`: what a narrow page writes before it, where there is no room for columns.
+std::string data_cell(const std::string& cell, const std::string& label, const char* more = "") {
+  const std::string name = fmt::format(" data-label=\"{}\"", words(label));
   if (cell.empty()) {
-    return fmt::format("<td class=\"zero{}\">–</td>", more);
+    return fmt::format("<td class=\"zero{}\"{}>–</td>", more, name);
   }
   const char* look = !parse_number(cell) ? "text" : cell == "0" ? "zero" : "";
-  return fmt::format("<td class=\"{}{}\">{}</td>", look, more, readable(cell));
+  return fmt::format("<td class=\"{}{}\"{}>{}</td>", look, more, name, readable(cell));
 }
 
 std::string header_cell(const std::string& text, bool left = false) {
-  std::string words = html(text);
-  std::replace(words.begin(), words.end(), '_', ' ');
-  return fmt::format("<th{}>{}</th>", left ? " class=\"text\"" : "", words);
+  return fmt::format("<th{}>{}</th>", left ? " class=\"text\"" : "", words(text));
 }
 
 /// Columns of a summary table: those before `runs` describe the point; the others come in groups
@@ -60,16 +67,16 @@ std::string statistic_cell(const std::vector<Cell>& row, std::size_t group, bool
                            const std::string& name) {
   const auto text = [&](std::size_t i) { return to_text(row[group + i]); };
   if (!repeated || text(0).empty()) {
-    return data_cell(text(0));
+    return data_cell(text(0), name);
   }
   if (name == "tunnelled" || name == "passed" || name == "turned") {
-    return data_cell(text(0));
+    return data_cell(text(0), name);
   }
   if (text(2) == text(4)) {
-    return data_cell(text(3));
+    return data_cell(text(3), name);
   }
-  return fmt::format("<td>{} <span class=\"range\">{} – {}</span></td>", readable(text(3)),
-                     readable(text(2)), readable(text(4)));
+  return fmt::format("<td data-label=\"{}\">{} <span class=\"range\">{} – {}</span></td>",
+                     words(name), readable(text(3)), readable(text(2)), readable(text(4)));
 }
 
 }  // namespace
@@ -92,8 +99,8 @@ std::string csv_table_html(const std::string& path) {
   out += "</tr></thead><tbody>\n";
   for (const auto& row : table.rows) {
     out += "<tr>";
-    for (const Cell& cell : row) {
-      out += data_cell(to_text(cell));
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      out += data_cell(to_text(row[i]), table.columns[i]);
     }
     out += "</tr>\n";
   }
@@ -135,8 +142,10 @@ std::string errata_html(const ReportEntry& entry) {
           test);
     }
     out += fmt::format(
-        "<tr><td></td><td class=\"text\">{}</td><td>{}</td><td>{}</td><td>{}</td><td "
-        "class=\"unit\">{}</td><td class=\"unit\">{}</td><td class=\"{}\">{}</td></tr>\n",
+        "<tr><td></td><td class=\"text\">{}</td><td>{}</td><td data-label=\"predicted\">{}</td>"
+        "<td data-label=\"measured\">{}</td><td class=\"unit\" data-label=\"unit\">{}</td>"
+        "<td class=\"unit\" data-label=\"agree to\">{}</td><td class=\"{}\" "
+        "data-label=\"verdict\">{}</td></tr>\n",
         html(text(i, "quantity")), html(text(i, "relation")), readable(text(i, "predicted")),
         readable(text(i, "measured")), html(text(i, "unit")), agreement(i),
         html(text(i, "verdict")), html(text(i, "verdict")));
@@ -185,9 +194,9 @@ std::string summary_html(const std::string& folder, const std::string& sweep, st
   for (const auto& row : table.rows) {
     out += "<tr>";
     for (std::size_t i = 0; i < layout.point; ++i) {
-      out += data_cell(to_text(row[i]));
+      out += data_cell(to_text(row[i]), table.columns[i]);
     }
-    out += fmt::format("<td>{} of {}</td>", to_text(row[layout.point + 1]),
+    out += fmt::format("<td data-label=\"completed\">{} of {}</td>", to_text(row[layout.point + 1]),
                        to_text(row[layout.point]));
     for (const std::size_t group : layout.metrics) {
       const std::string& column = table.columns[group];
@@ -237,10 +246,11 @@ std::string overview_html(const std::string& folder, const std::vector<std::stri
   }
   out += "</tr></thead><tbody>\n";
   for (const std::string& method : methods) {
-    out += "<tr>" + data_cell(method);
+    out += "<tr>" + data_cell(method, "method");
     for (const std::string& sweep : sweeps) {
       for (const auto& metric : shown) {
         out += data_cell(cells[method + '\n' + sweep + '\n' + metric.first],
+                         sweep + ": " + metric.second,
                          metric.first == shown.front().first ? " first" : "");
       }
     }

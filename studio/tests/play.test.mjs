@@ -138,7 +138,7 @@ const pixel = (p, at) => p.evaluate((place) => {
 
 test("a rally of 20 strokes by the pointer: event-driven passes 0, original some; each is seen again, the track is saved", async () => {
   const { page: p, context, said, asked } = await open(chrome, studioPage, {
-    ready: () => window.game?.rally, hash: "#play", viewport: { width: 950, height: 520 },
+    ready: () => window.game?.rally, hash: "#table-tennis", viewport: { width: 950, height: 520 },
     deviceScaleFactor: 0.5,  // a quarter of the pixels, for a driver that renders in software
   });
   const along = page.swingDirection.toArray();

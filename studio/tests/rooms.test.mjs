@@ -84,8 +84,8 @@ test("lesson 5: the books of both methods balance; lesson 6: each integrator sho
 
 for (const [what, options] of [["a wide page", {}], ["a phone in the dark", { viewport: { width: 360, height: 740 }, colorScheme: "dark", hasTouch: true, isMobile: true }]]) {
   test(`${what}: axe finds nothing in table tennis and in lessons, nothing sticks out`, async () => {
-    for (const hash of ["#play", "#lesson-1", "#lesson-4"]) {
-      const ready = hash === "#play" ? () => window.game?.rally?.count > 2 : () => window.lessons?.drawn > 0;
+    for (const hash of ["#table-tennis", "#lesson-1", "#lesson-4"]) {
+      const ready = hash === "#table-tennis" ? () => window.game?.rally?.count > 2 : () => window.lessons?.drawn > 0;
       const { page, context, said } = await open(chrome, studioPage, { ready, hash, viewport: { width: 1250, height: 800 }, ...half, ...options });
       await page.evaluate(axe);
       const found = await page.evaluate(() => window.axe.run());

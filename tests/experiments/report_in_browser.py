@@ -3,9 +3,9 @@
 
 usage: report_in_browser.py FOLDER
 
-FOLDER holds index.html. Checks that every picture loads, that the page does not scroll sideways at
-360, 600 and 1280 px, that a figure says so where it is wider than its place, that the console stays
-silent, that every local link leads somewhere, and that nothing is fetched from elsewhere. Exit code 77: there is no Chromium to ask.
+FOLDER holds the pages. Checks of each that every picture loads, that the page does not scroll sideways at 360, 600
+and 1280 px, folded or unfolded, that it is shorter than 20 screens, that the console stays silent, that
+every local link leads somewhere, and that nothing is fetched from elsewhere. Exit code 77: there is no Chromium to ask.
 """
 
 import html
@@ -27,32 +27,39 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stab
 # The page itself has no script: this one looks at it from outside, through a frame of the width of
 # a phone or a desktop.
 LOOKING_GLASS = """<!DOCTYPE html><html><body style="margin:0">
-<iframe id="page" src="{page}" style="width:{width}px;height:2000px;border:0"></iframe>
+<iframe id="page" style="width:{width}px;height:800px;border:0"></iframe>
 <pre id="answer">waiting</pre>
 <script>
-document.getElementById("page").addEventListener("load", event => {{
-  const page = event.target.contentDocument;
+const frame = document.getElementById("page");
+const shown = address => new Promise(done => {{
+  frame.addEventListener("load", done, {{ once: true }});
+  frame.src = address;
+}});
+async function look(address) {{
+  await shown(address);
+  const page = frame.contentDocument;
   const root = page.documentElement;
+  for (const image of page.images) image.loading = "eager";
+  await Promise.all([...page.images].map(image => image.decode().catch(() => 0)));
+  const screens = root.scrollHeight / 800;
+  for (const folded of page.querySelectorAll("details:not(.live)")) folded.open = true;
   const wide = [...page.querySelectorAll("body *")].filter(element => {{
     const box = element.getBoundingClientRect();
-    return box.right > root.clientWidth + 1 && !element.closest(".scroll, .picture, pre");
+    return box.right > root.clientWidth + 1 && !element.closest(".scroll, .picture, pre, thead");
   }});
-  // A caption tells of scrolling where its figure scrolls, and nowhere else.
-  const untold = [...page.querySelectorAll("figure")].filter(figure => {{
-    const picture = figure.querySelector(".picture");
-    const hint = event.target.contentWindow.getComputedStyle(
-      figure.querySelector("figcaption"), "::before").content;
-    return (picture.scrollWidth > picture.clientWidth) !== hint.includes("Scroll");
-  }});
-  document.getElementById("answer").textContent = JSON.stringify({{
-    width: root.clientWidth, needed: root.scrollWidth, pictures: page.images.length,
-    untold: untold.map(f => f.textContent.slice(0, 60)),
+  return {{
+    page: address.split("/").pop(), screens, width: root.clientWidth, needed: root.scrollWidth, pictures: page.images.length,
     broken: [...page.images].filter(i => !i.complete || i.naturalWidth === 0).map(i => i.src),
-    wide: wide.slice(0, 5).map(e => e.tagName + "." + e.className + ": " +
-                                    e.textContent.slice(0, 60))}});
-}});
+    wide: wide.slice(0, 5).map(e => e.tagName + "." + e.className + ": " + e.textContent.slice(0, 60))}};
+}}
+(async () => {{
+  const answers = [];
+  for (const address of {pages}) answers.push(await look(address));
+  document.getElementById("answer").textContent = JSON.stringify(answers);
+}})();
 </script></body></html>
 """
+MOST_SCREENS = 20
 
 
 def find_browser():
@@ -64,11 +71,12 @@ def find_browser():
     return None
 
 
-def look(browser, page, width):
-    """What the browser says of the page at this width, and its console."""
+def look(browser, pages, width):
+    """What the browser says of the pages at this width, and its console."""
     with tempfile.TemporaryDirectory(prefix="kairos-browser-") as scratch:
         glass = pathlib.Path(scratch) / "glass.html"
-        glass.write_text(LOOKING_GLASS.format(page=page.as_uri(), width=width), encoding="utf-8")
+        glass.write_text(LOOKING_GLASS.format(
+            pages=json.dumps([page.as_uri() for page in pages]), width=width), encoding="utf-8")
         ran = subprocess.run(
             [browser, "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
              "--no-first-run", "--disable-background-networking", "--allow-file-access-from-files",
@@ -97,29 +105,34 @@ class Links(html.parser.HTMLParser):
                 self.targets.append(value)
 
 
-def dead_links(page):
+def dead_links(pages):
     """Links that lead nowhere, or away from the folder."""
-    links = Links()
-    links.feed(page.read_text(encoding="utf-8"))
+    read = {}
+    for page in pages:
+        read[page.name] = Links()
+        read[page.name].feed(page.read_text(encoding="utf-8"))
     dead = []
-    for target in links.targets:
-        if target.startswith("#"):
-            if target[1:] not in links.names and target != "#":
-                dead.append(target)
-        elif target.startswith("data:"):
-            continue
-        elif ":" in target.split("/")[0] or target.startswith("//"):
-            dead.append(f"{target} (not in this folder)")
-        elif not (page.parent / urllib.parse.unquote(target)).is_file():
-            dead.append(target)
+    for page in pages:
+        for target in read[page.name].targets:
+            path, _, place = target.partition("#")
+            if target.startswith("data:"):
+                continue
+            if ":" in target.split("/")[0] or target.startswith("//"):
+                dead.append(f"{page.name}: {target} (not in this folder)")
+            elif path and not (page.parent / urllib.parse.unquote(path)).is_file():
+                dead.append(f"{page.name}: {target}")
+            elif place and (path or page.name) in read and place not in read[path or page.name].names:
+                dead.append(f"{page.name}: {target}")
     return dead
 
 
 def main(arguments):
     if len(arguments) != 1:
         sys.exit(__doc__)
-    page = pathlib.Path(arguments[0]).resolve() / "index.html"
-    problems = [f"dead link: {link}" for link in dead_links(page)]
+    pages = sorted(pathlib.Path(arguments[0]).resolve().glob("*.html"))
+    if not pages:
+        sys.exit(f"{arguments[0]} holds no page")
+    problems = [f"dead link: {link}" for link in dead_links(pages)]
     browser = find_browser()
     if browser is None:
         if problems:
@@ -127,14 +140,18 @@ def main(arguments):
         print(f"skipped: none of {', '.join(BROWSERS)} is on the path; links lead somewhere")
         sys.exit(SKIPPED)
     for width in WIDTHS:
-        seen, console = look(browser, page, width)
-        problems += [f"{width} px: not loaded: {picture}" for picture in seen["broken"]]
+        answers, console = look(browser, pages, width)
         problems += [f"{width} px: console: {line}" for line in console]
-        problems += [f"{width} px: its hint to scroll is wrong: {figure}" for figure in seen["untold"]]
-        if seen["needed"] > seen["width"]:
-            problems.append(f"{width} px: scrolls sideways, {seen['needed']} px wide: {seen['wide']}")
-        print(f"{width} px: {seen['pictures']} pictures, {seen['needed']} px needed, "
-              f"{len(console)} lines on the console")
+        for seen in answers:
+            name = f"{width} px: {seen['page']}"
+            problems += [f"{name}: not loaded: {picture}" for picture in seen["broken"]]
+            if seen["needed"] > seen["width"]:
+                problems.append(f"{name}: scrolls sideways, {seen['needed']} px wide: {seen['wide']}")
+            if seen["screens"] > MOST_SCREENS:
+                problems.append(f"{name}: {seen['screens']:.1f} screens")
+        longest = max(answers, key=lambda seen: seen["screens"])
+        print(f"{width} px: {len(answers)} pages, {sum(seen['pictures'] for seen in answers)} pictures, the longest "
+              f"{longest['page']} with {longest['screens']:.1f} screens, {len(console)} lines on the console")
     if problems:
         sys.exit("\n".join(problems))
 

@@ -44,7 +44,11 @@ metrics = ["tunnelled", "impacts"]
   (void)run_experiment(read_experiment(spec, Size::quick),
                        {Size::quick, 1, "kairos sweep mine.toml --quick"},
                        folder.path("report/mine"));
-  const std::string page = read_all(write_report(folder.path("report")).path);
+  const std::string first = read_all(write_report(folder.path("report")).path);
+  CHECK(has(first, "href=\"mine.html\""));
+  const std::string page = read_all(folder.path("report/mine.html"));
+  CHECK(has(page, "<details><summary>To repeat it"));
+  CHECK(has(page, "data-label=\"tunnelled\""));
   CHECK(has(page, "Mine &amp; &lt;yours&gt;"));
   CHECK(has(page, "Does it &quot;work&quot;?"));
   CHECK(has(page, "kairos sweep mine.toml --quick"));

@@ -33,7 +33,7 @@ async function start(): Promise<void> {
   const viewed = async () => { if (!studio.viewer) await studio.load("bounce"); };
   bindRooms({
     scenes: { enter: () => studio.comeBack(), leave: () => { studio.mine = false; } },
-    play: { enter: () => void viewed().then(() => playOf(studio).enter()), leave: () => window.game?.leave() },
+    "table-tennis": { enter: () => void viewed().then(() => playOf(studio).enter()), leave: () => window.game?.leave() },
     lesson: { enter: (hash) => void viewed().then(() => lessonsOf(studio).enter(hash)), leave: () => window.lessons?.leave() },
   });
   window.studio = studio;

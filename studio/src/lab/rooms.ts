@@ -1,4 +1,4 @@
-// The rooms of the page: scenes, table tennis, lessons. The address says which: #play.
+// The rooms of the page: scenes, table tennis, lessons. The address says which: #table-tennis.
 import { element } from "../viewer";
 
 export interface Room {
@@ -17,6 +17,7 @@ export function bindRooms(rooms: Record<string, Room>): void {
     if (name !== shown || name !== names[0]) {
       shown = name;
       document.body.dataset.room = name === "lesson" ? "lessons" : name;
+      window.scrollTo(0, 0);
       rooms[name].enter(hash);
     }
     for (const link of element("rooms").querySelectorAll("a")) {
