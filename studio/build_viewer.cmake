@@ -6,6 +6,8 @@ file(MAKE_DIRECTORY ${work})
 file(COPY ${SOURCE}/package.json ${SOURCE}/package-lock.json ${SOURCE}/build.mjs ${SOURCE}/scenes.mjs
           ${SOURCE}/src
      DESTINATION ${work})
+# A page of other sources is none: it goes before the new one is made.
+file(REMOVE ${FOLDER}/viewer.html ${FOLDER}/viewer.stamp)
 file(SHA256 ${SOURCE}/package-lock.json lock)
 set(fetched ${work}/node_modules/fetched)
 set(have "")
