@@ -2,6 +2,7 @@
 
 #include "core/state.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <iterator>
 #include <utility>
@@ -32,8 +33,10 @@ struct PairRole {
 class BodyPairs {
  public:
   BodyPairs() = default;
-  /// `all`: also those that cannot do anything to each other.
-  BodyPairs(std::vector<PairRole> roles, bool all) : roles_(std::move(roles)), all_(all) {}
+  /// `all`: also those that cannot do anything to each other. `apart`: pairs (first < second,
+  /// sorted) that do nothing to each other though their roles would let them.
+  BodyPairs(std::vector<PairRole> roles, bool all, std::vector<BodyPair> apart = {})
+      : roles_(std::move(roles)), apart_(std::move(apart)), all_(all) {}
 
   class Iterator {
    public:
@@ -98,14 +101,19 @@ class BodyPairs {
         }
       }
     }
-    return pairs;
+    return all_ ? pairs : pairs - apart_.size();
   }
   [[nodiscard]] bool contains(BodyIndex a, BodyIndex b) const {
-    return all_ || interaction(roles_[a], roles_[b]);
+    return all_ || (interaction(roles_[a], roles_[b]) && !kept_apart(a, b));
+  }
+  [[nodiscard]] bool kept_apart(BodyIndex a, BodyIndex b) const {
+    return !apart_.empty() &&
+           std::binary_search(apart_.begin(), apart_.end(), BodyPair(std::minmax(a, b)));
   }
 
  private:
   std::vector<PairRole> roles_;
+  std::vector<BodyPair> apart_;
   bool all_ = false;
 };
 

@@ -15,6 +15,8 @@ class Drive {
   /// of a recording, where velocity may jump; the end of a polynomial fit). Never of length 0.
   [[nodiscard]] virtual Motion motion(Instant t, double at_most) const = 0;
   [[nodiscard]] virtual std::string description() const = 0;
+  /// Whether its velocity never jumps, so that a joint can follow it.
+  [[nodiscard]] virtual bool smooth() const { return true; }
   /// Whether it tells when a fist is closed (7.5).
   [[nodiscard]] virtual bool has_gestures() const { return false; }
   /// Whether the fist is closed from t on; changes only where a `motion` ends.

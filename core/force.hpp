@@ -11,6 +11,7 @@ namespace kairos {
 inline namespace core {
 
 class Archive;
+class JointSystem;
 
 /// Force through the origin of a body and torque about it, world frame (N, N m).
 struct Wrench {
@@ -49,12 +50,23 @@ class Force {
   [[nodiscard]] virtual std::string description() const = 0;
 };
 
-/// The bodies that forces couple: what a `Stepper` advances. Usually one body.
+/// What putting states back onto the constraints of joints did to their energy, J, into the bodies.
+struct JointProjection {
+  double velocity = 0.0;  ///< impulses on velocities: sum p (u- + u+) / 2, u relative
+  double driven = 0.0;    ///< share of driven sides in that
+  double position = 0.0;  ///< minus the work of the constant forces on the displacement
+  bool converged = true;
+};
+
+/// The bodies that forces and joints couple: what a `Stepper` advances. Usually one body.
 struct Island {
   std::vector<BodyIndex> bodies;        ///< indices into the model
   std::vector<BodyInertia> inertia;     ///< one per body
   std::vector<Vector3> constant_force;  ///< one per body, N: gravity, given forces, active fields
   std::vector<const Force*> forces;     ///< state- or time-dependent, not owned
+  /// What holds its bodies together, not owned; null: nothing. Its forces are then the last of
+  /// `forces`.
+  const JointSystem* joints = nullptr;
 
   /// Wrenches on all bodies at time t.
   void wrenches(Instant t, std::span<const BodyState> states, std::span<Wrench> out) const;

@@ -35,6 +35,8 @@ struct LawInfo {
   std::string_view name;
   bool needs_contact = false;  ///< uses the contact's point and normal
   std::string_view summary;
+  /// Of a single contact without friction it is Newton's hypothesis, which joints can pass on.
+  bool passed_on_by_joints = false;
 };
 
 /// Port: what do two bodies in contact do to each other?

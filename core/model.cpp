@@ -2,6 +2,7 @@
 
 #include "core/error.hpp"
 #include "core/island_force.hpp"
+#include "core/model_tally.hpp"
 #include "core/scene_check.hpp"
 
 #include <fmt/format.h>
@@ -24,42 +25,7 @@ bool is_spherical(const Vector3& inertia) {
   return inertia.maxCoeff() - inertia.minCoeff() <= roundoff * inertia.maxCoeff();
 }
 
-/// The same decision for many bodies is told once.
-class Tally {
- public:
-  void add(std::string_view what, const std::string& name, const std::string& reason) {
-    const auto same = [&](const Entry& e) { return e.what == what && e.reason == reason; };
-    auto found = std::find_if(entries_.begin(), entries_.end(), same);
-    if (found == entries_.end()) {
-      found = entries_.insert(entries_.end(), {std::string(what), reason, "", 0});
-    }
-    if (found->count < most_names) {
-      found->names += fmt::format("{}\"{}\"", found->count > 0 ? ", " : "", name);
-    }
-    ++found->count;
-  }
-  [[nodiscard]] std::vector<Decision> decisions(const std::string& topic) const {
-    std::vector<Decision> result;
-    for (const Entry& e : entries_) {
-      const std::string others =
-          e.count > most_names ? fmt::format(" and {} more", e.count - most_names) : "";
-      result.push_back({topic, fmt::format("{}: {}{}", e.what, e.names, others), e.reason});
-    }
-    return result;
-  }
-
- private:
-  static constexpr std::size_t most_names = 4;
-  struct Entry {
-    std::string what;
-    std::string reason;
-    std::string names;
-    std::size_t count = 0;
-  };
-  std::vector<Entry> entries_;
-};
-
-/// Groups of bodies that forces couple: the smallest index of each body's group.
+/// Groups of bodies that forces and joints couple: the smallest index of each body's group.
 std::vector<BodyIndex> group_of(const Scene& scene) {
   std::vector<BodyIndex> group(scene.bodies.size());
   std::iota(group.begin(), group.end(), BodyIndex{0});
@@ -69,11 +35,22 @@ std::vector<BodyIndex> group_of(const Scene& scene) {
     }
     return i;
   };
+  const auto couple = [&](BodyIndex i, BodyIndex j) {
+    const BodyIndex a = root(i);
+    const BodyIndex b = root(j);
+    group[std::max(a, b)] = std::min(a, b);
+  };
   for (const SceneForce& force : scene.forces) {
     for (const BodyIndex i : force.bodies) {
-      const BodyIndex a = root(i);
-      const BodyIndex b = root(force.bodies.front());
-      group[std::max(a, b)] = std::min(a, b);
+      couple(i, force.bodies.front());
+    }
+  }
+  const auto is_free = [&](const JointSide& side) {
+    return side.body && scene.bodies[*side.body].entity->mobility() == Mobility::free;
+  };
+  for (const Joint& joint : scene.joints) {
+    if (is_free(joint.a) && is_free(joint.b)) {
+      couple(*joint.a.body, *joint.b.body);
     }
   }
   for (BodyIndex i = 0; i < group.size(); ++i) {
@@ -89,6 +66,7 @@ Model::Model(Scene scene, const ModelOptions& options)
   check_scene(scene_);
   choose_bodies();
   choose_forces();
+  choose_joints();
   choose_friction();
   choose_rotation();
   choose_pairs();
@@ -224,14 +202,15 @@ void Model::choose_rotation() {
 
 /// Which pairs can ever meet.
 void Model::choose_pairs() {
-  pairs_ = BodyPairs(roles_, !options_.prune_pairs);
+  pairs_ = BodyPairs(roles_, !options_.prune_pairs, jointed_pairs());
   const std::size_t all = size() * (size() - 1) / 2;
   const std::size_t tested = pairs_.size();
   decide({{"pairs", fmt::format("{} of {} are tested", tested, all),
            tested == all ? "nothing is left out"
                          : fmt::format("{} cannot do anything to each other: neither moves freely, "
-                                       "or a field would act on what does not",
-                                       all - tested)},
+                                       "or a field would act on what does not{}",
+                                       all - tested,
+                                       scene_.joints.empty() ? "" : ", or a joint holds them")},
           choose_broad_phase()});
 }
 
@@ -289,12 +268,13 @@ void Model::choose_islands() {
     }
     island.forces.push_back(island_forces_.back().get());
   }
+  build_joints(place);
   for (const Island& island : islands_) {
     if (island.bodies.size() > 1) {
       decide({{"islands",
                fmt::format("{} bodies from \"{}\" on are integrated together", island.bodies.size(),
                            body(island.bodies.front()).name),
-               "forces couple them"}});
+               island.joints == nullptr ? "forces couple them" : "joints couple them"}});
     }
   }
 }
@@ -308,9 +288,9 @@ void Model::choose_grips() {
     const auto held = std::find_if(scene_.bodies.begin(), scene_.bodies.end(),
                                    [&](const Body& b) { return b.name == body(hand).holds; });
     const auto i = static_cast<BodyIndex>(held - scene_.bodies.begin());
-    if (islands_[island_of_[i]].bodies.size() > 1) {
+    if (islands_[island_of_[i]].bodies.size() > 1 || jointed_[i]) {
       throw InputError(scene_.path, body(hand).line, fmt::format("body.{}.holds", body(hand).name),
-                       fmt::format("forces couple \"{}\" to other bodies; a hand holds a body "
+                       fmt::format("forces or joints couple \"{}\" to others; a hand holds a body "
                                    "that moves by itself",
                                    body(i).name));
     }
@@ -374,6 +354,7 @@ State Model::initial_state() const {
       state.push_back(b.initial);
     }
   }
+  put_onto_joints(state);
   return state;
 }
 

@@ -71,15 +71,18 @@ class Model {
   /// all pairs, of which still only those do anything to each other that `interacts`.
   [[nodiscard]] const BodyPairs& pairs() const { return pairs_; }
   [[nodiscard]] bool interacts(BodyIndex a, BodyIndex b) const {
-    return a != b && interaction(roles_[a], roles_[b]);
+    return a != b && interaction(roles_[a], roles_[b]) && !pairs_.kept_apart(a, b);
   }
   /// Free bodies in the order of their names: what adds up over bodies does so in this order, so
   /// that no sum depends on the order in the file.
   [[nodiscard]] const std::vector<BodyIndex>& free_by_name() const { return free_by_name_; }
-  /// The bodies that forces couple, with their constant forces; free bodies only, by name.
+  /// The bodies that forces and joints couple, with their constant forces; free bodies only, by
+  /// name.
   [[nodiscard]] const std::vector<Island>& islands() const { return islands_; }
   /// Island of a free body.
   [[nodiscard]] std::size_t island_of(BodyIndex i) const { return island_of_[i]; }
+  /// Whether a joint holds this free body.
+  [[nodiscard]] bool jointed(BodyIndex i) const { return jointed_[i]; }
   /// True if the island moves in closed form: a parabola, and a rotation that is left out or of
   /// constant rate.
   [[nodiscard]] bool closed_form(std::size_t island) const { return closed_form_[island]; }
@@ -111,8 +114,12 @@ class Model {
   void choose_forces();
   void choose_friction();
   void choose_rotation();
+  void choose_joints();
   void choose_pairs();
   [[nodiscard]] Decision choose_broad_phase();
+  [[nodiscard]] std::vector<BodyPair> jointed_pairs() const;
+  void build_joints(const std::vector<std::size_t>& place);
+  void put_onto_joints(State& state) const;
   void choose_islands();
   void choose_grips();
   void choose_motion();
@@ -134,6 +141,7 @@ class Model {
   BodyPairs pairs_;
   std::vector<Island> islands_;
   std::vector<std::shared_ptr<const Force>> island_forces_;  ///< owns what islands refer to
+  std::vector<bool> jointed_;
   std::vector<std::size_t> island_of_;
   std::vector<Grip> grips_;
   std::vector<bool> closed_form_;

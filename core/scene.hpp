@@ -5,6 +5,7 @@
 #include "core/entity.hpp"
 #include "core/force.hpp"
 #include "core/frame_times.hpp"
+#include "core/joint.hpp"
 #include "core/shape.hpp"
 
 #include <map>
@@ -73,6 +74,7 @@ struct Scene {
   Combine friction_combine = Combine::geometric_mean;
   std::vector<Body> bodies;  ///< in the order of creation
   std::vector<SceneForce> forces;
+  std::vector<Joint> joints;
   std::optional<ExactSolution> exact;
 
   /// Restitution of a pair of its bodies, from 0 to 1.

@@ -1,6 +1,7 @@
 #include "core/scene_check.hpp"
 
 #include "core/error.hpp"
+#include "core/joint_check.hpp"
 
 #include <fmt/format.h>
 
@@ -136,6 +137,7 @@ void check_scene(const Scene& scene) {
     }
   }
   check_forces(scene);
+  check_joints(scene);
 }
 
 }  // namespace core

@@ -32,6 +32,7 @@ struct StepResult {
   double error = 0.0;     ///< estimated local error, in units of the tolerance; 0: none
   bool ok = true;
   std::string_view reason;  ///< of a failure
+  JointProjection projection = {};  ///< at the end of the step, of islands with joints
 };
 
 /// One meaning of tolerance for all controlled steppers: the estimated local error of a step is at
@@ -80,6 +81,9 @@ class Stepper {
   /// Lets steps end where one of the gaps falls through zero, as far as the solver's own
   /// rootfinding sees it. False, and nothing changes, for steppers that have none. Before `start`.
   virtual bool watch(std::shared_ptr<const GapFunction> /*gaps*/) { return false; }
+  /// Whether it holds the joints of an island by itself. All others see their forces, and are put
+  /// back onto the constraints by `ConstrainedStepper`.
+  [[nodiscard]] virtual bool holds_joints() const { return false; }
   /// Right-hand sides evaluated so far: the counted cost.
   [[nodiscard]] virtual std::int64_t evaluations() const = 0;
   /// Writes or reads all that the next step, the last step's dense output and the counted cost

@@ -30,7 +30,7 @@ PenetrationProbe::PenetrationProbe(const Model& model)
 }
 
 bool PenetrationProbe::can_penetrate(BodyIndex a, BodyIndex b) const {
-  return !model_.is_field(a) && !model_.is_field(b) && (model_.is_free(a) || model_.is_free(b));
+  return !model_.is_field(a) && !model_.is_field(b) && model_.interacts(a, b);
 }
 
 /// Pairs that could penetrate, in the order of the model's, until `visit` says that it is enough.

@@ -26,7 +26,8 @@ void RunGuard::begin(const Model& model) {
   free_top_.assign(model.size(), 0);
   most_energy_.assign(model.size(), unknown);
   for (BodyIndex i = 0; i < model.size(); ++i) {
-    free_top_[i] = watch_spin_ && model.is_free(i) && model.rotates(i) ? 1 : 0;
+    free_top_[i] =
+        watch_spin_ && model.is_free(i) && model.rotates(i) && !model.jointed(i) ? 1 : 0;
   }
   for (const SceneForce& force : model.scene().forces) {
     for (const BodyIndex i : force.bodies) {

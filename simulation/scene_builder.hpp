@@ -67,7 +67,7 @@ class SceneBuilder {
   SceneBuilder& set(std::string_view key, const KeyValue& value);
   /// A body, after those there are: order is the order of creation.
   SceneBuilder& body(std::string_view name, KeyValue::Keys keys);
-  /// An element of another list of the scene: `force`.
+  /// An element of another list of the scene: `force`, `joint`.
   SceneBuilder& add(std::string_view list, KeyValue::Keys keys);
 
   /// The scene, as its reader makes it. Throws `InputError` with the key (`body.ball.radius`).

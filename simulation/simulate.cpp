@@ -2,6 +2,7 @@
 
 #include "core/archive.hpp"
 #include "core/error.hpp"
+#include "core/joints/constrained_stepper.hpp"
 #include "core/schemes/shared/journaled_stepper.hpp"
 #include "simulation/cold_restarts.hpp"
 #include "simulation/model_gaps.hpp"
@@ -97,6 +98,9 @@ Plan make_plan(const Model& model, const RunChoice& choice, const PlugIns& own) 
       return with_cold_restarts(make(of, island));
     };
   }
+  plan.method.stepper = [make = plan.method.stepper](const Model& of, std::size_t island) {
+    return make_constrained(make(of, island), of.islands()[island]);
+  };
   const double frame = mean_frame_duration(plan.options.frames);
   require(positive(frame), "frame", frame, "a finite number > 0 (s)");
   return plan;
@@ -131,6 +135,12 @@ std::string refusal(const Model& model, const Plan& plan) {
     return fmt::format(
         "the scene has friction, of which scheme '{}' knows nothing; allowed: friction = 0 for all "
         "bodies of the scene, or a scheme that treats it (see `kairos list`)",
+        scheme.name);
+  }
+  if (!model.scene().joints.empty() && !scheme.joints) {
+    return fmt::format(
+        "the scene has joints, of which scheme '{}' knows nothing; allowed: a scheme that holds "
+        "them (see `kairos list`)",
         scheme.name);
   }
   if (const std::string pair = pair_across_islands(model); detector.at_step_ends && !pair.empty()) {

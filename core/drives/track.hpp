@@ -34,6 +34,8 @@ class Track : public Drive {
 
   [[nodiscard]] Motion motion(Instant t, double at_most) const override;
   [[nodiscard]] std::string description() const override { return options_.description; }
+  /// Not even with `smooth`: where the recording begins and ends, it starts and stops.
+  [[nodiscard]] bool smooth() const override { return samples_.size() == 1; }
   [[nodiscard]] bool has_gestures() const override { return options_.gestures; }
   [[nodiscard]] bool closed(Instant t) const override;
   [[nodiscard]] const std::vector<TrackSample>& samples() const { return samples_; }

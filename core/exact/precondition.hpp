@@ -19,6 +19,7 @@ inline void need(bool holds, const Scene& scene, const std::string& what) {
 
 /// Indices of the bodies that move freely.
 inline std::vector<BodyIndex> free_bodies(const Scene& scene) {
+  need(scene.joints.empty(), scene, "bodies that no joint holds");
   std::vector<BodyIndex> result;
   for (BodyIndex i = 0; i < scene.bodies.size(); ++i) {
     if (scene.bodies[i].entity->mobility() == Mobility::free) {

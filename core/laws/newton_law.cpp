@@ -143,7 +143,8 @@ class NewtonLaw final : public ImpactLaw, public GroupLaw {
   }
 
   [[nodiscard]] LawInfo info() const override {
-    return {"newton", true, "restitution at the contact point, with rotation, without friction"};
+    return {"newton", true, "restitution at the contact point, with rotation, without friction",
+            true};
   }
 
   ImpactEnergy apply(const Contact& contact, ImpactBody a, ImpactBody b) const override {

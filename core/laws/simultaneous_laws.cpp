@@ -44,7 +44,8 @@ std::unique_ptr<ImpactLaw> make_moreau_law() {
   return std::make_unique<SimultaneousLaw>(
       LawInfo{"moreau", true,
               "restitution of all contacts of touching bodies at once, without friction: keeps "
-              "momentum and symmetry, never gains energy"},
+              "momentum and symmetry, never gains energy",
+              true},
       newton_group);
 }
 
@@ -52,7 +53,8 @@ std::unique_ptr<ImpactLaw> make_reflections_law() {
   return std::make_unique<SimultaneousLaw>(
       LawInfo{"reflections", true,
               "impacts of touching bodies as reflections in turn, without friction: keeps "
-              "momentum, symmetry, and energy at e = 1; a cradle hands on"},
+              "momentum, symmetry, and energy at e = 1; a cradle hands on",
+              true},
       reflected_group);
 }
 

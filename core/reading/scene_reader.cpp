@@ -8,6 +8,7 @@
 #include "core/reading/document.hpp"
 #include "core/reading/force_reader.hpp"
 #include "core/reading/frame_reader.hpp"
+#include "core/reading/joint_reader.hpp"
 #include "core/reading/many_reader.hpp"
 #include "core/reading/overrides.hpp"
 #include "core/reading/scene_keys.hpp"
@@ -111,6 +112,19 @@ void read_forces(const Item& item, double G, Scene& scene) {
   }
 }
 
+void read_joints(const Item& item, Scene& scene) {
+  const Array& array = item.array();
+  UniqueNames names;
+  for (std::size_t i = 0; i < array.size(); ++i) {
+    const Item element(array[i], element_path("joint", array[i], i));
+    read_joint(element, scene);
+    if (const auto name = TableReader(element).find("name")) {
+      (void)read_name(*name);
+      names.add(*name, "joint", array[i].line);
+    }
+  }
+}
+
 Scene read(const TableReader& table, const std::string& path) {
   table.refuse_unknown(scene_keys_of(""));
   const std::filesystem::path file(path);
@@ -163,6 +177,9 @@ Scene read(const TableReader& table, const std::string& path) {
   }
   if (const auto force = table.find("force")) {
     read_forces(*force, defaults.G, scene);
+  }
+  if (const auto joint = table.find("joint")) {
+    read_joints(*joint, scene);
   }
   if (const auto exact = table.find("exact")) {
     scene.exact = read_exact(*exact);

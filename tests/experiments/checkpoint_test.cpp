@@ -126,7 +126,8 @@ std::vector<Case> cases() {
   std::vector<Case> all;
   for (const auto& [name, duration] :
        {std::pair{"bounce-inelastic", 1.6}, std::pair{"spinning-box", 0.1}, std::pair{"table", 0.4},
-        std::pair{"pad", 1.2}, std::pair{"bat", 0.3}, std::pair{"table-tennis", 0.9}}) {
+        std::pair{"pad", 1.2}, std::pair{"bat", 0.3}, std::pair{"table-tennis", 0.9},
+        std::pair{"double-pendulum", 0.2}, std::pair{"bridge", 0.5}}) {
     all.push_back({name, Model(read_scene(find_scene(name))), duration});
   }
   all.push_back({"drag", Model(with_drag(read_scene(find_scene("spinning-box")), 1)), 0.1});

@@ -48,7 +48,11 @@ std::string EventContacts::unkept() const {
 void EventContacts::set_free(std::span<const BodyIndex> bodies, Instant t) {
   const auto changes = modes_.part(bodies);
   for (const BodyIndex i : bodies) {
-    motions_.bring_others(i, t);
+    if (joints_of(i) == nullptr) {
+      motions_.bring_others(i, t);
+    } else {
+      part_jointed(i, t);
+    }
     if (motions_.support(i)) {
       resume_support(i, t);
     }
@@ -242,7 +246,10 @@ bool EventContacts::in_one_island(BodyIndex a, BodyIndex b) const {
 /// The islands of the two fly on from `now`, where an impact has put them.
 void EventContacts::depart(BodyIndex a, BodyIndex b, Instant t) {
   for (const BodyIndex i : {a, b}) {
-    if (run_.model.is_free(i)) {
+    // What hangs together by joints was struck together.
+    if (joints_of(i) != nullptr) {
+      part_jointed(i, t);
+    } else if (run_.model.is_free(i)) {
       for (const BodyIndex k : motions_.island(i)) {
         if (k != a && k != b) {
           motions_.bring(k, t);

@@ -2,20 +2,56 @@
 
 #include "core/schemes/event/event_world.hpp"
 
+#include <fmt/format.h>
+
 namespace kairos {
 inline namespace core {
 namespace {
 
+/// Why it cannot run a scene with joints like this.
+std::string refuses_joints(const Model& model, const Method& method) {
+  if (!method.law->info().passed_on_by_joints) {
+    return fmt::format(
+        "the impact law '{}' knows nothing of the joints of the scene; allowed: "
+        "newton, moreau, reflections",
+        method.law->info().name);
+  }
+  if (method.detector->info().at_step_ends) {
+    return fmt::format(
+        "the detector '{}' finds contacts within steps of the integrator, which "
+        "joints put back onto their constraints; allowed: another detector",
+        method.detector->info().name);
+  }
+  for (BodyIndex i = 0; i < model.size(); ++i) {
+    if (model.has_friction() && model.is_free(i) && model.jointed(i) &&
+        model.body(i).friction > 0.0) {
+      return fmt::format(
+          "'{}' hangs on a joint and has friction, which is not treated together; "
+          "allowed: friction = 0 for it",
+          model.body(i).name);
+    }
+  }
+  return {};
+}
+
 class EventDriven final : public Scheme {
  public:
   [[nodiscard]] SchemeInfo info() const override {
-    return {"event-driven", "from impact to impact, whatever the frames", "Lubachevsky1991", true};
+    SchemeInfo info{"event-driven", "from impact to impact, whatever the frames", "Lubachevsky1991",
+                    true};
+    info.joints = true;
+    return info;
   }
 
   [[nodiscard]] std::string refuses(const Model& model, const Method& method,
                                     const SchemeOptions&) const override {
     if (!method.detector->info().locates) {
       return "event-driven needs a detector that locates contacts in time";
+    }
+    if (!model.scene().joints.empty()) {
+      if (std::string reason = refuses_joints(model, method); !reason.empty()) {
+        return reason;
+      }
     }
     for (BodyIndex i = 0; i < model.size(); ++i) {
       if (!model.entity(i).nudge().none()) {

@@ -65,7 +65,7 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double patience,
   if (!group.empty()) {
     return hand_on(event, std::max(-approach, 0.0), std::move(group), t);
   }
-  if (lands(a, b, event.contact, t)) {
+  if (lands(a, b, event.contact, t) || rest_on_joints(event, t)) {
     return;
   }
   using Kind = EventAccumulation::Finding::Kind;
@@ -93,6 +93,9 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double patience,
 
 /// The impact law acts, and the ledger knows.
 void EventContacts::strike(Event& event) {
+  if (joints_of(event.a) != nullptr || joints_of(event.b) != nullptr) {
+    return strike_jointed(event);
+  }
   Vector3 unused_a = Vector3::Zero();  // solids that push (none does) would need fields
   Vector3 unused_b = Vector3::Zero();
   const ImpactEnergy energy =
@@ -146,6 +149,9 @@ void EventContacts::leave_at_rest(const EventModes::GroupImpact& impact,
 /// knows none.
 bool EventContacts::strike_group(const BodyPair& pair, double approach, Instant t) {
   const auto* law = dynamic_cast<const GroupLaw*>(&run_.law);
+  if (joints_of(pair.first) != nullptr || joints_of(pair.second) != nullptr) {
+    return false;
+  }
   const bool held = modes_.holds(pair.first) || modes_.holds(pair.second);
   if (law == nullptr || !(held || law->takes_what_touches())) {
     return false;

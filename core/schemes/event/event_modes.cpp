@@ -101,7 +101,9 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
     found.group.radius.push_back(finite_radius(run_.model.shape(i)));
     if (run_.model.is_free(i)) {
       const Island& island = run_.model.islands()[run_.model.island_of(i)];
-      if (island.bodies.size() > 1 || (!island.forces.empty() && !wish.impact)) {
+      if (island.joints != nullptr) {
+        found.refusal = "'" + run_.model.body(i).name + "' hangs on a joint";
+      } else if (island.bodies.size() > 1 || (!island.forces.empty() && !wish.impact)) {
         found.refusal = "'" + run_.model.body(i).name + "' feels forces that are not constant";
       }
     } else if (run_.model.mobility(i) == Mobility::driven && !wish.impact) {
@@ -368,6 +370,13 @@ void EventModes::begin_contact(BodyIndex a, BodyIndex b, Instant t) {
     patch->told = true;
     motions_.note(EventKind::contact_begins, a, b, t);
   }
+}
+
+void EventModes::join(BodyIndex i, BodyIndex j, Instant t, double remaining) {
+  const auto [a, b] = run_.agenda.before(i, j) ? std::pair{i, j} : std::pair{j, i};
+  Patch& patch = graph_.join(a, b);
+  patch.begins = t + remaining;
+  run_.agenda.push(patch.begins, Due::contact_begins, a, b);
 }
 
 std::vector<EventModes::Change> EventModes::part(std::span<const BodyIndex> bodies) {

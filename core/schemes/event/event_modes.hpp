@@ -81,6 +81,9 @@ class EventModes {
   /// What the pair, whose states are at `now`, is in touch with: all of it, or what is held.
   [[nodiscard]] GroupImpact impact_group(const BodyPair& pair, Instant t, bool all);
 
+  /// A pair is in touch from now on, its bodies at rest; its bounces will have died down after
+  /// `remaining`, s.
+  void join(BodyIndex i, BodyIndex j, Instant t, double remaining);
   /// The bodies are held no longer; takes effect with their next launch.
   [[nodiscard]] std::vector<Change> part(std::span<const BodyIndex> bodies);
   void tell(std::span<const Change> changes, Instant t);

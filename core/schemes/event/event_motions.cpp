@@ -1,6 +1,7 @@
 #include "core/schemes/event/event_motions.hpp"
 
 #include "core/archive.hpp"
+#include "core/joint_system.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -72,11 +73,41 @@ void EventMotions::launch(BodyIndex i, Instant t) {
   Flow& flow = flow_of(i);
   flow.held = false;
   set_forces(flow);
+  if (flow.island.joints != nullptr) {
+    put_onto_joints(i, t);
+  }
   for (std::size_t k = 0; k < flow.states.size(); ++k) {
     flow.states[k] = now_[flow.island.bodies[k]];
   }
   flow.stepper->restart(flow.island, t, flow.states);
   next_segment(flow, t);
+}
+
+void EventMotions::put_onto_joints(BodyIndex i, Instant t) {
+  Flow& flow = flow_of(i);
+  for (std::size_t k = 0; k < flow.states.size(); ++k) {
+    flow.states[k] = now_[flow.island.bodies[k]];
+  }
+  const JointProjection projection = flow.island.joints->project_velocities(t, flow.states);
+  run_.ledger.add(EnergyLine::projection, projection.velocity);
+  run_.ledger.add(EnergyLine::driven_work, projection.driven);
+  for (std::size_t k = 0; k < flow.states.size(); ++k) {
+    BodyState& now = now_[flow.island.bodies[k]];
+    run_.account.struck(flow.island.bodies[k], now, flow.states[k]);
+    now = flow.states[k];
+  }
+}
+
+void EventMotions::rest(BodyIndex i, Instant t) {
+  Flow& flow = flow_of(i);
+  flow.held = true;
+  for (std::size_t k = 0; k < flow.states.size(); ++k) {
+    const BodyIndex body = flow.island.bodies[k];
+    flow.states[k] = booked_[body] = now_[body];
+    set_motion(body, Motion::at_rest(t, now_[body].pose));
+  }
+  flow.booked = t;
+  flow.projection = {};
 }
 
 void EventMotions::hold(BodyIndex i, Instant t, const Vector3& acceleration) {
@@ -128,6 +159,7 @@ void EventMotions::next_segment(Flow& flow, Instant t) {
     run_.stop(t, "integrator: " + std::string(step.reason));
     return;
   }
+  flow.projection = step.projection;
   flow.exact = flow.stepper->info().order == 0;  // a closed form may have given up
   flow.stepper->dense_output(flow.motions);
   for (std::size_t k = 0; k < flow.motions.size(); ++k) {
@@ -301,12 +333,17 @@ void EventMotions::book(Flow& flow, Instant t) {
   const double roundoff = run_.options.roundoff ? new_roundoff(flow, t) : 0.0;
   // What the motion of a top is off its closed form is truncation: polynomials are fitted to it.
   const bool exact = flow.held || (flow.exact && !run_.model.tumbles(run_.model.island_of(first)));
-  const Leg leg{flow.island, booked_, now_, field_forces_, exact, roundoff, riding_work(flow, t)};
+  Leg leg{flow.island, booked_, now_, field_forces_, exact, roundoff, riding_work(flow, t)};
   if (flow.island.forces.empty()) {
     run_.account.leg(leg);
   } else {
     for (std::size_t k = 0; k < flow.motions.size(); ++k) {
       flow.motions[k] = of(flow.island.bodies[k]);
+    }
+    if (flow.island.joints != nullptr) {
+      leg.contact_work = whole ? run_.account.projected(flow.projection) : 0.0;
+      leg.riding_work = run_.account.joint_work(flow.island, flow.motions, flow.booked, duration) +
+                        (whole ? flow.projection.driven : 0.0);
     }
     run_.account.leg(leg, flow.motions, flow.booked, duration);
   }
@@ -368,7 +405,8 @@ std::int64_t EventMotions::evaluations() const {
 void EventMotions::MovingBody::persist(Archive& archive) { archive(motion, support, fields); }
 
 void EventMotions::Flow::persist(Archive& archive) {
-  archive(island.constant_force, exact, carried, held, states, launched, roundoff, booked);
+  archive(island.constant_force, exact, carried, held, states, launched, roundoff, booked,
+          projection.velocity, projection.driven, projection.position);
   stepper->persist(archive);
 }
 

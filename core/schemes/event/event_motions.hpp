@@ -43,6 +43,13 @@ class EventMotions {
   /// The same for a body that contact forces hold, alone in its island: it moves in closed form
   /// from `now`, at this acceleration (m/s^2), turning as it does, until it is launched again.
   void hold(BodyIndex i, Instant t, const Vector3& acceleration);
+  /// The island of i, which joints and a contact hold, is at rest from `now` on, until it is
+  /// launched again.
+  void rest(BodyIndex i, Instant t);
+  /// Velocities at `now` of an island with joints, up to which it has been booked, are put back
+  /// onto their constraints. Positions are so at the end of the next segment: here they might push
+  /// bodies that touch into each other.
+  void put_onto_joints(BodyIndex i, Instant t);
   /// The segment of a body has ended: the next one.
   void go_on(BodyIndex i, Instant t);
   /// Body i has the hand's translation from t on, and its own orientation; what takes it from where
@@ -107,8 +114,9 @@ class EventMotions {
     std::unique_ptr<SupportForce> support{};  ///< while it slides under state-dependent forces
     std::vector<BodyState> launched{};        ///< where the segment began: for replays
     std::vector<ReplayedStep> replayed{};
-    double roundoff = 0.0;  ///< of the segment so far, J
-    Instant booked{};       ///< how far the ledger has followed it
+    double roundoff = 0.0;         ///< of the segment so far, J
+    Instant booked{};              ///< how far the ledger has followed it
+    JointProjection projection{};  ///< at the end of the segment
 
     void persist(Archive& archive);
   };

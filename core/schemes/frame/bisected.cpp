@@ -1,5 +1,6 @@
 #include "core/schemes/frame/bisected.hpp"
 
+#include "core/schemes/frame/frame_joints.hpp"
 #include "core/schemes/frame/substeps.hpp"
 
 #include <string>
@@ -35,16 +36,21 @@ FirstContact first_contact(FrameWorld& world, double part) {
 class Bisected final : public Scheme {
  public:
   [[nodiscard]] SchemeInfo info() const override {
-    return {"bisected", "substeps, and bisection to the first contact in each", "Dembovsky1999",
+    return {"bisected",
+            "substeps, and bisection to the first contact in each",
+            "Dembovsky1999",
+            true,
+            false,
+            {},
             true};
   }
 
-  [[nodiscard]] std::string refuses(const Model&, const Method& method,
+  [[nodiscard]] std::string refuses(const Model& model, const Method& method,
                                     const SchemeOptions&) const override {
     if (!method.detector->info().locates) {
       return "bisected needs a detector that locates contacts within a substep";
     }
-    return {};
+    return why_not_jointed(model);
   }
 
   RunResult run(const Model& model, const Method& method, const SchemeOptions& options,

@@ -60,6 +60,7 @@ bool FrameMotions::step(Mover& mover, double& done, double until) {
       mover.stepper->step(mover.island, run_.time + done, until - done, mover.states);
   ++run_.cost.steps;
   const double reached = done + result.advanced;
+  mover.projection = result.projection;
   if (!result.ok || !(reached > done)) {
     run_.stop(result.ok ? "integrator: its steps are too short to get on"
                         : "integrator: " + std::string(result.reason));
@@ -88,7 +89,7 @@ void FrameMotions::advance(double h) {
       if (dense) {
         mover.stepper->dense_output(mover.motions);
       }
-      book_step(mover, run_.bodies, mover.states, start, mover.last_step, true);
+      book_step(mover, run_.bodies, mover.states, start, mover.last_step, true, mover.projection);
       for (std::size_t k = 0; k < mover.states.size(); ++k) {
         run_.bodies[mover.island.bodies[k]] = mover.states[k];
       }
@@ -154,6 +155,7 @@ void FrameMotions::propose(double h) {
     mover.booked = mover.states;
     mover.booked_until = 0.0;
     mover.bent_at = 0.0;
+    mover.projections.clear();
     for (const BodyIndex i : mover.island.bodies) {
       paths_[i].clear();
     }
@@ -186,6 +188,7 @@ void FrameMotions::fly(Mover& mover, double from, double to) {
       return;
     }
     mover.stepper->dense_output(mover.motions);
+    mover.projections.emplace_back(done, mover.projection);
     for (std::size_t k = 0; k < mover.motions.size(); ++k) {
       paths_[mover.island.bodies[k]].push_back(mover.motions[k]);
     }
@@ -259,7 +262,8 @@ void FrameMotions::fly_on(BodyIndex i, double s, const State& meeting) {
 
 /// Books one stepper step, or a part of one: from states by body to states by place in the island.
 void FrameMotions::book_step(Mover& mover, const State& from, const std::vector<BodyState>& to,
-                             Instant t, double h, bool replayable) {
+                             Instant t, double h, bool replayable,
+                             const JointProjection& projection) {
   for (std::size_t k = 0; k < to.size(); ++k) {
     const BodyIndex i = mover.island.bodies[k];
     to_[i] = to[k];
@@ -272,7 +276,12 @@ void FrameMotions::book_step(Mover& mover, const State& from, const std::vector<
   // A closed form may have given up; that of a top is rounded to a polynomial.
   mover.exact = mover.stepper->info().order == 0 &&
                 !run_.model.tumbles(run_.model.island_of(mover.island.bodies.front()));
-  const Leg leg{mover.island, from, to_, run_.given_force, mover.exact, roundoff};
+  Leg leg{mover.island, from, to_, run_.given_force, mover.exact, roundoff};
+  if (mover.island.joints != nullptr) {
+    leg.contact_work = run_.account.projected(projection);
+    leg.riding_work =
+        run_.account.joint_work(mover.island, mover.motions, t, h) + projection.driven;
+  }
   if (mover.island.forces.empty()) {
     run_.account.leg(leg);
   } else {
@@ -298,6 +307,17 @@ double FrameMotions::roundoff_of(Mover& mover, const State& from, const std::vec
   return sum;
 }
 
+/// What put the states back at the end of the motion that a leg of the proposal is on, if the leg
+/// goes on until there (but for roundoff of its end).
+JointProjection FrameMotions::projection_until(const Mover& mover, double from, double end) {
+  for (const auto& [ends, projection] : mover.projections) {
+    if (ends > from) {
+      return end >= ends * (1.0 - 1e-12) ? projection : JointProjection{};
+    }
+  }
+  return {};
+}
+
 /// The ledger follows an island along its path up to `until` of the proposal.
 void FrameMotions::book_path(Mover& mover, double until) {
   const BodyIndex first = mover.island.bodies.front();
@@ -321,7 +341,8 @@ void FrameMotions::book_path(Mover& mover, double until) {
       to[k] = at_end ? mover.states[k] : on_path(i, end);
       from_[i] = mover.booked[k];
     }
-    book_step(mover, from_, to, run_.time + from, end - from, replayable);
+    book_step(mover, from_, to, run_.time + from, end - from, replayable,
+              projection_until(mover, from, end));
     mover.booked = to;
     mover.booked_until = end;
   }

@@ -69,6 +69,9 @@ class FrameMotions {
     std::vector<BodyState> before{};   ///< scratch: where a leg begins
     std::vector<BodyState> reached{};  ///< scratch: where it ends
     std::vector<ReplayedStep> replayed{};
+    JointProjection projection{};  ///< at the end of the last step
+    /// The same of each motion of the proposal, and when it ends, s from now.
+    std::vector<std::pair<double, JointProjection>> projections{};
     double booked_until = 0.0;  ///< of the proposal, s
     double bent_at = 0.0;       ///< last, in the proposal, s
 
@@ -85,7 +88,9 @@ class FrameMotions {
   void settle(BodyIndex i, double interval);
 
   void book_step(Mover& mover, const State& from, const std::vector<BodyState>& to, Instant t,
-                 double h, bool replayable);
+                 double h, bool replayable, const JointProjection& projection);
+  [[nodiscard]] static JointProjection projection_until(const Mover& mover, double from,
+                                                        double end);
   void book_path(Mover& mover, double until);
   [[nodiscard]] double roundoff_of(Mover& mover, const State& from,
                                    const std::vector<BodyState>& to, double h);

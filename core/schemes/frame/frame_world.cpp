@@ -165,13 +165,20 @@ void FrameWorld::persist(Archive& archive) {
   run_.recorder.persist(archive);
 }
 
+/// Neighbours on a joint, which do not meet as solids.
+static bool held_by_a_joint(const Model& model, BodyIndex a, BodyIndex b) {
+  return !model.scene().joints.empty() && !model.interacts(a, b) &&
+         (model.is_free(a) || model.is_free(b)) && !model.is_field(a) && !model.is_field(b);
+}
+
 int detect_and_handle(FrameWorld& world) {
   constexpr BodyIndex none = std::numeric_limits<BodyIndex>::max();
   BodyIndex last_next = none;
   int handled = 0;
   for (BodyIndex current = 0; current < world.size(); ++current) {
     for (BodyIndex next = current + 1; next < world.size(); ++next) {
-      if (!world.movable(current) && !world.movable(next)) {
+      if ((!world.movable(current) && !world.movable(next)) ||
+          held_by_a_joint(world.model(), current, next)) {
         continue;
       }
       if (world.overlap(current, next) && next != last_next) {

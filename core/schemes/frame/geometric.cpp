@@ -1,5 +1,6 @@
 #include "core/schemes/frame/geometric.hpp"
 
+#include "core/schemes/frame/frame_joints.hpp"
 #include "core/schemes/frame/frame_world.hpp"
 
 namespace kairos {
@@ -37,16 +38,21 @@ void handle_contacts(FrameWorld& world) {
 class Geometric final : public Scheme {
  public:
   [[nodiscard]] SchemeInfo info() const override {
-    return {"geometric", "once a frame, with the box swept by each body (fig. 14)", "Dembovsky1999",
+    return {"geometric",
+            "once a frame, with the box swept by each body (fig. 14)",
+            "Dembovsky1999",
+            true,
+            false,
+            {},
             true};
   }
 
-  [[nodiscard]] std::string refuses(const Model&, const Method& method,
+  [[nodiscard]] std::string refuses(const Model& model, const Method& method,
                                     const SchemeOptions&) const override {
     if (!method.detector->info().locates) {
       return "geometric needs a detector that locates contacts within the frame";
     }
-    return {};
+    return why_not_jointed(model);
   }
 
   RunResult run(const Model& model, const Method& method, const SchemeOptions& options,

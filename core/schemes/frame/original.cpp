@@ -1,5 +1,6 @@
 #include "core/schemes/frame/original.hpp"
 
+#include "core/schemes/frame/frame_joints.hpp"
 #include "core/schemes/frame/frame_world.hpp"
 
 namespace kairos {
@@ -9,13 +10,18 @@ namespace {
 class Original final : public Scheme {
  public:
   [[nodiscard]] SchemeInfo info() const override {
-    return {"original", "once a frame: draw, detect and handle, move (fig. 7)", "Dembovsky1999",
-            false};
+    return {"original",
+            "once a frame: draw, detect and handle, move (fig. 7)",
+            "Dembovsky1999",
+            false,
+            false,
+            {},
+            true};
   }
 
-  [[nodiscard]] std::string refuses(const Model&, const Method&,
+  [[nodiscard]] std::string refuses(const Model& model, const Method&,
                                     const SchemeOptions&) const override {
-    return {};
+    return why_not_jointed(model);
   }
 
   RunResult run(const Model& model, const Method& method, const SchemeOptions& options,

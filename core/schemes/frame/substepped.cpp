@@ -1,5 +1,6 @@
 #include "core/schemes/frame/substepped.hpp"
 
+#include "core/schemes/frame/frame_joints.hpp"
 #include "core/schemes/frame/substeps.hpp"
 
 namespace kairos {
@@ -9,13 +10,18 @@ namespace {
 class Substepped final : public Scheme {
  public:
   [[nodiscard]] SchemeInfo info() const override {
-    return {"substepped", "fractions of the frame with limited movement (fig. 15)", "Dembovsky1999",
-            false};
+    return {"substepped",
+            "fractions of the frame with limited movement (fig. 15)",
+            "Dembovsky1999",
+            false,
+            false,
+            {},
+            true};
   }
 
-  [[nodiscard]] std::string refuses(const Model&, const Method&,
+  [[nodiscard]] std::string refuses(const Model& model, const Method&,
                                     const SchemeOptions&) const override {
-    return {};
+    return why_not_jointed(model);
   }
 
   RunResult run(const Model& model, const Method& method, const SchemeOptions& options,

@@ -1,5 +1,7 @@
 #include "core/schemes/shared/energy_account.hpp"
 
+#include "core/joint_system.hpp"
+
 #include <array>
 
 namespace kairos {
@@ -159,6 +161,23 @@ double EnergyAccount::bearing_work(std::span<const Force* const> forces, const M
     act(forces, {&motion, 1}, t);
     work -= node.weight * duration * normal.dot(wrenches_[0].force) *
             normal.dot(motion.position.derivative(t - motion.start));
+  }
+  return work;
+}
+
+double EnergyAccount::joint_work(const Island& island, std::span<const Motion> motions,
+                                 Instant start, double duration) {
+  double work = 0.0;
+  if (!island.joints->driven()) {
+    return work;
+  }
+  for (const Node& node : nodes) {
+    const Instant t = start + node.abscissa * duration;
+    act(std::span(island.forces).first(island.forces.size() - 1), motions, t);
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+      wrenches_[k].force += island.constant_force[k];
+    }
+    work += node.weight * duration * island.joints->driven_power(t, along_, wrenches_);
   }
   return work;
 }

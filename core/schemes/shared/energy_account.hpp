@@ -57,6 +57,17 @@ class EnergyAccount {
   [[nodiscard]] double bearing_work(std::span<const Force* const> forces, const Motion& motion,
                                     const Vector3& normal, Instant start, double duration);
 
+  /// Work of driven sides of joints along the motions of an island, J.
+  [[nodiscard]] double joint_work(const Island& island, std::span<const Motion> motions,
+                                  Instant start, double duration);
+  /// States were put back onto the constraints of joints: books what that did, and returns its sum
+  /// but for the driven share, J.
+  double projected(const JointProjection& projection) {
+    ledger_.add(EnergyLine::projection, projection.velocity);
+    ledger_.add(EnergyLine::position_correction, projection.position);
+    return projection.velocity + projection.position;
+  }
+
   /// A hand took the bodies of an island from one state to another (both by `BodyIndex`): what that
   /// did to their energy at time t.
   void carried(const Island& island, Instant t, std::span<const BodyState> from,

@@ -79,7 +79,7 @@ std::optional<Support> find_support(const Model& model, BodyIndex ball, const Ve
                                     const Vector3& normal) {
   if (!std::holds_alternative<Sphere>(model.shape(ball)) || model.is_free(surface) ||
       model.is_field(surface) || surface_motion.rotation != RotationKind::fixed ||
-      model.islands()[model.island_of(ball)].bodies.size() != 1) {
+      model.islands()[model.island_of(ball)].bodies.size() != 1 || model.jointed(ball)) {
     return std::nullopt;
   }
   const Pose pose = surface_motion.pose(s);

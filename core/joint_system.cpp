@@ -1,0 +1,413 @@
+#include "core/joint_system.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+/// Relative, of W with a unit diagonal: rows that the others imply leave n eps there, and chains of
+/// bodies whose masses differ by a million leave more than 1e-9.
+constexpr double dependent = 1e-11;
+constexpr int most_rounds = 50;
+
+/// A row with what a unit of it does to its two bodies.
+struct Row {
+  JointRow row;
+  double driven_rate = 0.0;
+  std::size_t a = JointSystem::nowhere;
+  std::size_t b = JointSystem::nowhere;
+  Vector3 spin_a = Vector3::Zero();  ///< I_a^-1 turn_a
+  Vector3 spin_b = Vector3::Zero();
+};
+
+JointEnd end_of(const JointSystem::Side& side, Instant t, std::span<const BodyState> states) {
+  if (side.place != JointSystem::nowhere) {
+    return {states[side.place].pose, states[side.place].twist, {}};
+  }
+  if (side.drive == nullptr) {
+    return {side.pose, {}, {}};
+  }
+  const Motion motion = side.drive->motion(t, 1.0);
+  return {motion.pose(0.0),
+          motion.twist(0.0),
+          {motion.velocity.derivative(0.0), motion.angular_velocity.derivative(0.0)}};
+}
+
+/// I^-1 x, world frame; 0 where nothing turns it.
+Vector3 inverse_inertia(const BodyInertia& inertia, const Quaternion& q, const Vector3& x) {
+  if (!inertia.rotates) {
+    return Vector3::Zero();
+  }
+  return q * (q.conjugate() * x).cwiseQuotient(inertia.principal);
+}
+
+}  // namespace
+
+/// Scratch of one thread: nothing is allocated but where a larger system comes by.
+struct JointSystem::Workspace {
+  std::vector<Row> rows;
+  std::vector<JointRow> joint;
+  std::vector<Twist> moves;
+  Eigen::MatrixXd W;
+  Eigen::VectorXd scale;
+  Eigen::VectorXd b;
+  Eigen::VectorXd x;
+  Eigen::LLT<Eigen::MatrixXd> cholesky;
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> orthogonal;
+  bool regular = true;
+
+  [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(rows.size()); }
+  /// Adds J^T x.
+  void react(std::span<Wrench> wrenches) const;
+  /// x of W x = b.
+  void solve() {
+    b.array() *= scale.array();
+    if (regular) {
+      x = cholesky.solve(b);
+    } else {
+      x = orthogonal.solve(b);
+    }
+    x.array() *= scale.array();
+  }
+};
+
+JointSystem::Workspace& JointSystem::workspace() {
+  thread_local Workspace work;
+  return work;
+}
+
+JointSystem::JointSystem(std::vector<Placed> joints, std::vector<BodyInertia> inertia)
+    : joints_(std::move(joints)), inertia_(std::move(inertia)) {
+  for (const Placed& placed : joints_) {
+    row_count_ += row_count(placed.joint.kind);
+    size_ = std::max(size_, placed.joint.length);
+    for (const auto& [joint_side, side] :
+         {std::pair(&placed.joint.a, &placed.a), std::pair(&placed.joint.b, &placed.b)}) {
+      driven_ = driven_ || side->drive != nullptr;
+      if (side->place != nowhere) {
+        size_ = std::max({size_, joint_side->point.norm(), inertia_[side->place].bounding_radius});
+      }
+    }
+  }
+}
+
+void JointSystem::evaluate(Instant t, std::span<const BodyState> states, Workspace& work) const {
+  assert(states.size() == inertia_.size());
+  work.rows.resize(row_count_);
+  work.joint.resize(most_joint_rows);
+  std::size_t first = 0;
+  for (const Placed& placed : joints_) {
+    const JointEnd a = end_of(placed.a, t, states);
+    const JointEnd b = end_of(placed.b, t, states);
+    const std::size_t count = row_count(placed.joint.kind);
+    joint_rows(placed.joint, a, b, std::span(work.joint).first(count));
+    const Twist driven_a = placed.a.drive != nullptr ? a.twist : Twist{};
+    const Twist driven_b = placed.b.drive != nullptr ? b.twist : Twist{};
+    for (std::size_t k = 0; k < count; ++k) {
+      Row& row = work.rows[first + k];
+      row.row = work.joint[k];
+      row.driven_rate = driven_ ? row.row.rate(driven_a, driven_b) : 0.0;
+      row.a = placed.a.place;
+      row.b = placed.b.place;
+    }
+    first += count;
+  }
+}
+
+void JointSystem::factor(std::span<const BodyState> states, Workspace& work) const {
+  for (Row& row : work.rows) {
+    const auto spin = [&](std::size_t place, const Vector3& turn) {
+      return place == nowhere
+                 ? Vector3(Vector3::Zero())
+                 : inverse_inertia(inertia_[place], states[place].pose.orientation, turn);
+    };
+    row.spin_a = spin(row.a, row.row.turn_a);
+    row.spin_b = spin(row.b, row.row.turn_b);
+  }
+  const Eigen::Index n = work.size();
+  work.W.resize(n, n);
+  work.scale.resize(n);
+  const auto felt = [&](std::size_t place, const Row& r, const Row& s, const Vector3& spin,
+                        const Vector3& turn) {
+    return r.row.direction.dot(s.row.direction) / inertia_[place].mass + spin.dot(turn);
+  };
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Row& r = work.rows[static_cast<std::size_t>(i)];
+    for (Eigen::Index k = 0; k <= i; ++k) {
+      const Row& s = work.rows[static_cast<std::size_t>(k)];
+      double sum = 0.0;
+      if (r.a != nowhere && r.a == s.a) sum += felt(r.a, r, s, r.spin_a, s.row.turn_a);
+      if (r.b != nowhere && r.b == s.b) sum += felt(r.b, r, s, r.spin_b, s.row.turn_b);
+      if (r.a != nowhere && r.a == s.b) sum -= felt(r.a, r, s, r.spin_a, s.row.turn_b);
+      if (r.b != nowhere && r.b == s.a) sum -= felt(r.b, r, s, r.spin_b, s.row.turn_a);
+      work.W(i, k) = work.W(k, i) = sum;
+    }
+    work.scale[i] = work.W(i, i) > 0.0 ? 1.0 / std::sqrt(work.W(i, i)) : 0.0;
+  }
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index k = 0; k < n; ++k) {
+      work.W(i, k) *= work.scale[i] * work.scale[k];
+    }
+  }
+  work.cholesky.compute(work.W);
+  work.regular = work.cholesky.info() == Eigen::Success &&
+                 work.cholesky.matrixLLT().diagonal().cwiseAbs2().minCoeff() > dependent;
+  if (!work.regular) {
+    work.orthogonal.setThreshold(dependent);
+    work.orthogonal.compute(work.W);
+  }
+}
+
+std::size_t JointSystem::rank(Instant t, std::span<const BodyState> states) const {
+  Workspace& work = workspace();
+  evaluate(t, states, work);
+  factor(states, work);
+  return work.regular ? row_count_ : static_cast<std::size_t>(work.orthogonal.rank());
+}
+
+namespace {
+
+const Twist& twist_of(std::size_t place, std::span<const BodyState> states) {
+  static const Twist none;
+  return place == JointSystem::nowhere ? none : states[place].twist;
+}
+
+double rate_of(const Row& row, std::span<const BodyState> states) {
+  return row.row.rate(twist_of(row.a, states), twist_of(row.b, states)) + row.driven_rate;
+}
+
+}  // namespace
+
+double JointSystem::residual(Instant t, std::span<const BodyState> states) const {
+  Workspace& work = workspace();
+  evaluate(t, states, work);
+  double largest = 0.0;
+  for (const Row& row : work.rows) {
+    largest = std::max(largest, std::abs(row.row.residual) * (row.row.turns_only ? size_ : 1.0));
+  }
+  return largest;
+}
+
+double JointSystem::residual_rate(Instant t, std::span<const BodyState> states) const {
+  Workspace& work = workspace();
+  evaluate(t, states, work);
+  double largest = 0.0;
+  for (const Row& row : work.rows) {
+    largest =
+        std::max(largest, std::abs(rate_of(row, states)) * (row.row.turns_only ? size_ : 1.0));
+  }
+  return largest;
+}
+
+void JointSystem::solve_forces(Instant t, std::span<const BodyState> states,
+                               std::span<const Wrench> wrenches, Workspace& work) const {
+  evaluate(t, states, work);
+  factor(states, work);
+  const auto acceleration = [&](std::size_t place) {
+    Twist a;
+    if (place != nowhere) {
+      a.linear = wrenches[place].force / inertia_[place].mass;
+      if (inertia_[place].rotates) {
+        a.angular = angular_acceleration(inertia_[place], states[place], wrenches[place].torque);
+      }
+    }
+    return a;
+  };
+  work.b.resize(work.size());
+  for (Eigen::Index i = 0; i < work.size(); ++i) {
+    const Row& row = work.rows[static_cast<std::size_t>(i)];
+    work.b[i] = -(row.row.rate(acceleration(row.a), acceleration(row.b)) + row.row.bias);
+  }
+  work.solve();
+}
+
+void JointSystem::Workspace::react(std::span<Wrench> wrenches) const {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Row& row = rows[i];
+    const double share = x[static_cast<Eigen::Index>(i)];
+    if (row.a != nowhere) {
+      wrenches[row.a].force -= share * row.row.direction;
+      wrenches[row.a].torque -= share * row.row.turn_a;
+    }
+    if (row.b != nowhere) {
+      wrenches[row.b].force += share * row.row.direction;
+      wrenches[row.b].torque += share * row.row.turn_b;
+    }
+  }
+}
+
+void JointSystem::add_forces(Instant t, std::span<const BodyState> states,
+                             std::span<Wrench> wrenches) const {
+  Workspace& work = workspace();
+  solve_forces(t, states, wrenches, work);
+  work.react(wrenches);
+}
+
+void JointSystem::react(Instant t, std::span<const BodyState> states, std::span<const double> x,
+                        std::span<Wrench> wrenches) const {
+  Workspace& work = workspace();
+  evaluate(t, states, work);
+  work.x = Eigen::Map<const Eigen::VectorXd>(x.data(), work.size());
+  work.react(wrenches);
+}
+
+void JointSystem::multipliers(Instant t, std::span<const BodyState> states,
+                              std::span<const Wrench> wrenches, std::span<double> x) const {
+  Workspace& work = workspace();
+  solve_forces(t, states, wrenches, work);
+  Eigen::Map<Eigen::VectorXd>(x.data(), work.size()) = work.x;
+}
+
+void JointSystem::residuals(Instant t, std::span<const BodyState> states, std::span<double> r,
+                            std::span<double> rates) const {
+  Workspace& work = workspace();
+  evaluate(t, states, work);
+  for (std::size_t i = 0; i < work.rows.size(); ++i) {
+    r[i] = work.rows[i].row.residual;
+    rates[i] = rate_of(work.rows[i], states);
+  }
+}
+
+double JointSystem::driven_power(Instant t, std::span<const BodyState> states,
+                                 std::span<const Wrench> wrenches) const {
+  Workspace& work = workspace();
+  solve_forces(t, states, wrenches, work);
+  double power = 0.0;
+  for (Eigen::Index i = 0; i < work.size(); ++i) {
+    power -= work.x[i] * work.rows[static_cast<std::size_t>(i)].driven_rate;
+  }
+  return power;
+}
+
+/// Roundoff of coordinates and arms, m.
+double JointSystem::tolerance(std::span<const BodyState> states) const {
+  double largest = size_;
+  for (const BodyState& state : states) {
+    largest = std::max(largest, state.pose.position.lpNorm<Eigen::Infinity>());
+  }
+  return 2.0 * epsilon * largest;
+}
+
+JointProjection JointSystem::project_positions(Instant t, std::span<BodyState> states,
+                                               std::span<const Vector3> forces) const {
+  Workspace& work = workspace();
+  JointProjection result;
+  const double enough = tolerance(states);
+  double last = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < most_rounds; ++round) {
+    const double left = residual(t, states);  // leaves the rows in the workspace
+    if (left <= enough || !(left < last)) {
+      // Newton converges until roundoff: what no longer falls is that, or is no solution at all.
+      result.converged = left <= 1e-12 * std::max(size_, enough / epsilon);
+      return result;
+    }
+    last = left;
+    factor(states, work);
+    work.b.resize(work.size());
+    for (Eigen::Index i = 0; i < work.size(); ++i) {
+      work.b[i] = -work.rows[static_cast<std::size_t>(i)].row.residual;
+    }
+    work.solve();
+    work.moves.assign(states.size(), Twist{});
+    const auto move = [&](std::size_t place, const Row& row, const Vector3& spin, double x) {
+      if (place != nowhere) {
+        work.moves[place].linear += x / inertia_[place].mass * row.row.direction;
+        work.moves[place].angular += x * spin;
+      }
+    };
+    for (Eigen::Index i = 0; i < work.size(); ++i) {
+      const Row& row = work.rows[static_cast<std::size_t>(i)];
+      move(row.a, row, row.spin_a, -work.x[i]);
+      move(row.b, row, row.spin_b, work.x[i]);
+    }
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      Pose& pose = states[k].pose;
+      pose.position += work.moves[k].linear;
+      result.position -= forces[k].dot(work.moves[k].linear);
+      if (!work.moves[k].angular.isZero(0.0)) {
+        pose.orientation = rotate(work.moves[k].angular, pose.orientation).normalized();
+      }
+    }
+  }
+  result.converged = false;
+  return result;
+}
+
+JointProjection JointSystem::project_velocities(Instant t, std::span<BodyState> states) const {
+  Workspace& work = workspace();
+  evaluate(t, states, work);
+  factor(states, work);
+  JointProjection result;
+  work.b.resize(work.size());
+  for (int round = 0; round < 2; ++round) {  // what is left then is roundoff of what is left
+    for (Eigen::Index i = 0; i < work.size(); ++i) {
+      work.b[i] = -rate_of(work.rows[static_cast<std::size_t>(i)], states);
+    }
+    work.solve();
+    const auto rates = [&](double share) {
+      for (Eigen::Index i = 0; i < work.size(); ++i) {
+        const Row& row = work.rows[static_cast<std::size_t>(i)];
+        result.velocity += share * work.x[i] * rate_of(row, states);
+      }
+    };
+    rates(0.5);
+    for (Eigen::Index i = 0; i < work.size(); ++i) {
+      const Row& row = work.rows[static_cast<std::size_t>(i)];
+      result.driven -= work.x[i] * row.driven_rate;
+      if (row.a != nowhere) {
+        states[row.a].twist.linear -= work.x[i] / inertia_[row.a].mass * row.row.direction;
+        states[row.a].twist.angular -= work.x[i] * row.spin_a;
+      }
+      if (row.b != nowhere) {
+        states[row.b].twist.linear += work.x[i] / inertia_[row.b].mass * row.row.direction;
+        states[row.b].twist.angular += work.x[i] * row.spin_b;
+      }
+    }
+    rates(0.5);
+  }
+  return result;
+}
+
+double JointSystem::pass_on(Instant t, std::span<const BodyState> states,
+                            std::span<Twist> changes) const {
+  static const Twist none;
+  Workspace& work = workspace();
+  evaluate(t, states, work);
+  factor(states, work);
+  work.b.resize(work.size());
+  double driven = 0.0;
+  const auto change = [&](std::size_t place) -> const Twist& {
+    return place == nowhere ? none : changes[place];
+  };
+  for (int round = 0; round < 2; ++round) {
+    for (Eigen::Index i = 0; i < work.size(); ++i) {
+      const Row& row = work.rows[static_cast<std::size_t>(i)];
+      work.b[i] = -row.row.rate(change(row.a), change(row.b));
+    }
+    work.solve();
+    for (Eigen::Index i = 0; i < work.size(); ++i) {
+      const Row& row = work.rows[static_cast<std::size_t>(i)];
+      driven -= work.x[i] * row.driven_rate;
+      if (row.a != nowhere) {
+        changes[row.a].linear -= work.x[i] / inertia_[row.a].mass * row.row.direction;
+        changes[row.a].angular -= work.x[i] * row.spin_a;
+      }
+      if (row.b != nowhere) {
+        changes[row.b].linear += work.x[i] / inertia_[row.b].mass * row.row.direction;
+        changes[row.b].angular += work.x[i] * row.spin_b;
+      }
+    }
+  }
+  return driven;
+}
+
+}  // namespace core
+}  // namespace kairos
