@@ -27,9 +27,10 @@ const trailPoints = 96;
 const mostTrails = 48;
 const mostArrows = 24;
 
-/** Eight octants in two tones: one sees a ball turn. */
-function ballGeometry(): BufferGeometry {
-  const geometry = new SphereGeometry(1, 32, 24);
+/** Eight octants in two tones: one sees a ball turn. Of many balls each is small, and coarser. */
+function ballGeometry(balls: number): BufferGeometry {
+  const around = balls <= 40 ? 32 : balls <= 400 ? 20 : 12;
+  const geometry = new SphereGeometry(1, around, (3 * around) / 4);
   const position = geometry.getAttribute("position");
   const tones = new Float32Array(3 * position.count);
   for (let i = 0; i < position.count; ++i) {
@@ -184,7 +185,7 @@ export class World {
 
   private makeBodies(): void {
     const { run } = this;
-    const ball = ballGeometry();
+    const ball = ballGeometry(run.bodies.filter((body) => body.shape.kind === "sphere").length);
     const cube = new BoxGeometry(2, 2, 2);
     const kinds = new Map<string, number[]>();
     run.bodies.forEach((body, i) => {

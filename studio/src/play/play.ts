@@ -44,7 +44,9 @@ export class Play {
   private waiting = false;
   private last = 0;
   private due = 0;
-  private replayEnds = Infinity;
+  /** The stretch of time that is shown again and again, s. */
+  private loopFrom = 0;
+  private loopTo = Infinity;
   private replaying: Stroke | null = null;
   private shown: Run[] = [];
 
@@ -98,7 +100,7 @@ export class Play {
 
   private resume(): void {
     this.replaying = null;
-    this.replayEnds = Infinity;
+    this.loopTo = Infinity;
     this.host.viewer.player.play(false);
     document.body.classList.add("live");
     element("play-back").hidden = true;
@@ -124,7 +126,8 @@ export class Play {
   private readonly loop = (now: number): void => {
     requestAnimationFrame(this.loop);
     if (!this.on) return;
-    if (this.replaying && this.host.viewer.player.time > this.replayEnds) this.host.viewer.player.play(false);
+    const { player } = this.host.viewer;
+    if (this.replaying && player.playing && player.time > this.loopTo) player.seek(this.loopFrom);
     if (this.paused || this.waiting || this.replaying) return;
     const dt = this.step(now);
     if (dt > 0) void this.advance(dt);
@@ -257,10 +260,11 @@ export class Play {
     viewer.stage.controls.enabled = true;
     viewer.stage.lookAt(at.clone().add(new Vector3(0.95, 0.25, 0.35)), at);
     viewer.setSpeed(0.05);
-    viewer.player.seek(time - 0.09);
-    this.replayEnds = time + 0.09;
+    this.loopFrom = time - 0.06;
+    this.loopTo = time + 0.03;
+    viewer.player.seek(this.loopFrom);
     viewer.player.play(true);
-    this.say(`Stroke ${stroke.number}, twenty times slower: ${names[i]} let the ball through at ${stroke.verdicts[i].speed.toFixed(1)} m/s; a frame brought them ${(100 * stroke.verdicts[i].speed * frame).toFixed(0)} cm nearer, and bat and ball are 5.5 cm thick.`);
+    this.say(`Stroke ${stroke.number}, twenty times slower, again and again (Space stops it): ${names[i]} let the ball through at ${stroke.verdicts[i].speed.toFixed(1)} m/s; a frame brought them ${(100 * stroke.verdicts[i].speed * frame).toFixed(0)} cm nearer, and bat and ball are 5.5 cm thick.`);
   }
 
   private measure(latency: number, computing: number[]): void {

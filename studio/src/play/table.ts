@@ -31,9 +31,10 @@ export function faceAt(x: number, lift: number): Quaternion {
   return yaw.multiply(new Quaternion().setFromAxisAngle(new Vector3(1, 0, 0), lift));
 }
 
-/** Whether a ball that was let go of is on its last way to the bat: a thrown one when it has met the table. */
+/** Whether a ball that was let go of is on its last way to the bat: a thrown one when it has met the table, one
+ *  that was tossed up when it falls. */
 export function comes(kind: Kind, ball: { pz: number; vz: number; vy: number }): boolean {
-  return kind === "serve" ? ball.vy < 1 : ball.vz > 0 && ball.pz > 1.25 && ball.vy > 0;
+  return kind === "serve" ? ball.vy < 0 : ball.vz > 0 && ball.pz > 1.25 && ball.vy > 0;
 }
 
 export function withinReach(p: Vector3): Vector3 {
