@@ -19,7 +19,7 @@ export interface Verdict {
 const looks = 24;
 
 /** The stroke between `from` and the end of the run. A ball whose middle went from one side of the bat's middle
- *  plane to the other, within its outline, and was not brought back through it, has passed. */
+ *  plane to the other, within its outline, and was not brought back by an impact, has passed. */
 export function judge(run: Run, from: number): Verdict {
   const index = (name: string) => run.bodies.findIndex((body) => body.name === name);
   const [bat, ball] = [index("bat"), index("ball")];
@@ -52,13 +52,15 @@ export function judge(run: Run, from: number): Verdict {
     }
   }
   const crossings = crossed.length;
-  if (crossings % 2 === 1) return { outcome: "passed", ...crossed[0], crossings };
   const { events } = run;
-  for (let e = 0; e < events.time.length; ++e) {
-    const pair = [events.pair[2 * e], events.pair[2 * e + 1]];
-    if (events.kind[e] !== 0 || events.time[e] <= from || !pair.includes(bat) || !pair.includes(ball)) continue;
-    look(events.time[e]);
-    return { outcome: "hit", time: events.time[e], speed: Math.abs(v.z), crossings };
+  const impacts = Array.from(events.time, (time, e) => ({ time, kind: events.kind[e], pair: [events.pair[2 * e], events.pair[2 * e + 1]] }))
+    .filter((each) => each.kind === 0 && each.time > from && each.pair.includes(bat) && each.pair.includes(ball));
+  // Brought back: an impact between the way there and the way back. A bat that is drawn back brings nothing back.
+  const brought = crossings % 2 === 0 && impacts.some(({ time }) => time > crossed[0]?.time && time < crossed[crossings - 1].time);
+  if (crossings > 0 && !brought) return { outcome: "passed", ...crossed[0], crossings };
+  if (impacts.length > 0) {
+    look(impacts[0].time);
+    return { outcome: "hit", time: impacts[0].time, speed: Math.abs(v.z), crossings };
   }
   return { outcome: "missed", time: NaN, speed: NaN, crossings };
 }
