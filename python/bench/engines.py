@@ -4,8 +4,9 @@ usage: python3 engines.py SPEC.toml FOLDER [--shards N]
 
 One process of two threads; shards by GNU parallel, two at a time; a Slurm array on two daemons of
 this machine (tests/python/loopback_slurm.py); Dask with two workers, one of which is killed at work.
-All use two cores. Told: seconds of the wall clock for the runs and for merging, without the figure,
-and what both are above one process, per run.
+All use two cores. Told: seconds of the wall clock for the runs and for merging without the figure;
+processor time of all of it, the engine's own processes included (of Slurm, its daemons and the tasks,
+not what starts them), with the figure; and what that is above one process, per run.
 """
 
 import argparse
@@ -13,6 +14,8 @@ import filecmp
 import logging
 import os
 import re
+import resource
+import shlex
 import signal
 import subprocess
 import sys
@@ -40,6 +43,23 @@ def without_figure(*arguments):
     return took - float(re.search(r"figures in ([0-9.]+) s", done.stdout)[1]), took
 
 
+def processor():
+    """Seconds of this process and of all that it has waited for."""
+    return sum(getattr(resource.getrusage(who), what)
+               for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
+               for what in ("ru_utime", "ru_stime"))
+
+
+def timed_program(path, log):
+    """A script that runs the program and adds its processor time to a log: tasks of Slurm are no
+    children of ours."""
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("#!/usr/bin/env bash\nTIMEFORMAT='%U %S'\n"
+                   f"{{ time {shlex.quote(kairos.program())} \"$@\" 2>&3; }} 3>&2 2>>{shlex.quote(log)}\n")
+    os.chmod(path, 0o755)
+    return path
+
+
 def one_process(choice, out):
     return without_figure(choice.spec, "--threads", "2", "--out", out)[0]
 
@@ -59,7 +79,8 @@ def slurm_array(choice, out):
         subprocess.run(["sbatch", f"--array=1-{choice.shards}", f"--output={out}.%a.log",
                         CLUSTERS + "/sweep.slurm", choice.spec, out + "-shards"], check=True,
                        capture_output=True,
-                       env={**surroundings, "KAIROS_PROGRAM": kairos.program()})
+                       env={**surroundings,
+                            "KAIROS_PROGRAM": timed_program(out + ".program", out + ".times")})
         while subprocess.run(["squeue", "--noheader"], env=surroundings, check=True,
                              capture_output=True).stdout:
             time.sleep(0.05)
@@ -94,24 +115,30 @@ def main():
     parser.add_argument("--shards", type=int, default=8)
     choice = parser.parse_args()
     os.makedirs(choice.folder, exist_ok=True)
-    print(f"{'':16}{'ran, s':>10}{'merged, s':>12}{'above one process, us a run':>30}{'tables':>16}")
+    print(f"{'':16}{'ran, s':>10}{'merged, s':>12}{'processor, s':>14}{'above one, us a run':>22}"
+          f"{'tables':>16}")
     first = runs = merging = None
     for name, engine in ENGINES.items():
         out = os.path.join(choice.folder, name.replace(" ", "-"))
+        before = processor()
         ran, merged = engine(choice, out), 0.0
         if os.path.isdir(out + "-shards"):
             merging = without_figure("--merge", out + "-shards", "--out", out)
             merged = merging[0]
         elif name == "Dask":  # merged by kairos.sweep, and drawn: as long as the last ones
             ran, merged = ran - merging[1], merging[0]
+        spent = processor() - before
+        if os.path.isfile(out + ".times"):
+            with open(out + ".times", encoding="utf-8") as file:
+                spent += sum(float(number) for line in file for number in line.split())
         if first is None:
-            first, base = out, ran
+            first, base = out, spent
             runs = sum(len(kairos.Table(os.path.join(out, table))) for table in tables(out)
                        if table.endswith("_runs.csv"))
         same = tables(out) == tables(first) and all(
             filecmp.cmp(os.path.join(out, table), os.path.join(first, table), shallow=False)
             for table in tables(out))
-        print(f"{name:16}{ran:10.2f}{merged:12.2f}{(ran + merged - base) / runs * 1e6:30.1f}"
+        print(f"{name:16}{ran:10.2f}{merged:12.2f}{spent:14.2f}{(spent - base) / runs * 1e6:22.1f}"
               f"{'the same bytes' if same else 'DIFFER':>16}", flush=True)
     print(f"{runs} runs, {choice.shards} shards")
 

@@ -116,6 +116,10 @@ void SceneDraft::body(const std::string& name, const py::dict& keys) {
   append("body", std::move(table));
 }
 
+void SceneDraft::add(const std::string& list, const py::dict& keys) {
+  append(list, table_of(keys, list));
+}
+
 void SceneDraft::force(const py::dict& keys) { append("force", table_of(keys, "force")); }
 
 void SceneDraft::own_force(ForceChoices choices, std::vector<std::string> bodies) {
@@ -211,6 +215,7 @@ void bind_scene(py::module_& module) {
       .def_static("parse", &SceneDraft::parse, py::arg("text"), py::arg("path"))
       .def("set", &SceneDraft::set, py::arg("keys"))
       .def("body", &SceneDraft::body, py::arg("name"), py::arg("keys"))
+      .def("add", &SceneDraft::add, py::arg("list"), py::arg("keys"))
       .def("force", &SceneDraft::force, py::arg("keys"))
       .def("own_force",
            [](SceneDraft& draft, const std::string& name, const py::object& callable,

@@ -20,6 +20,8 @@ class SceneDraft {
 
   void set(const pybind11::dict& keys);
   void body(const std::string& name, const pybind11::dict& keys);
+  /// An element of a list of tables of scene files, `[[list]]`.
+  void add(const std::string& list, const pybind11::dict& keys);
   void force(const pybind11::dict& keys);
   void own_force(ForceChoices choices, std::vector<std::string> bodies);
   void override_key(const std::string& key, const pybind11::handle& value);

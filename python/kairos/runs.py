@@ -184,6 +184,11 @@ def run(scene: SceneLike, *, impact_law=None, recorder=None, motions: bool = Tru
     Where nothing of it is written in Python the interpreter's lock is released. Raises `InputError`
     for what is refused; a run that stops is a result with status "stopped" and a reason.
     """
+    if impact_law is not None and not callable(impact_law):
+        raise TypeError(f"impact_law: is {impact_law!r}; allowed: a callable law(contact)")
+    methods = [getattr(recorder, name, None) for name in ("frame", "event")]
+    if recorder is not None and not any(callable(method) for method in methods):
+        raise TypeError(f"recorder: {recorder!r} has neither frame(index, t, states) nor event(event)")
     return Run(_kairos.run(_scene(scene)._draft, options, impact_law, recorder, motions))
 
 

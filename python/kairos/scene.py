@@ -38,7 +38,8 @@ class Scene:
         scene = Scene("drop", duration=2.0).wall("floor", shape="half-space")
         scene.ball("ball", radius=0.1, mass=1, position=(0, 5, 0))
 
-    Every entity of the library is a method: `wall`, `ball`, `conveyor`, `bat`, ... (see `entities`).
+    Every entity of the library is a method: `wall`, `ball`, `conveyor`, `bat`, ... (see `entities`),
+    and so is every other list of named tables that scene files have: `many`, ...
     A `drive` may be a callable `(t, at_most) -> kairos.Motion` that holds t, or a `kairos.Spline`.
     """
 
@@ -73,6 +74,12 @@ class Scene:
     def body(self, name: str, **keys) -> "Scene":
         """A body, after those there are: order is the order of creation."""
         self._draft.body(name, keys)
+        return self
+
+    def add(self, table: str, **keys) -> "Scene":
+        """An element of a list of tables of scene files: `add("many", name="gas", ...)` is `[[many]]`.
+        Lists whose elements have names are methods by themselves: `many("gas", ...)`."""
+        self._draft.add(table, keys)
         return self
 
     def force(self, kind, *, bodies=None, name=None, potential=None, rotation=False, **keys):
@@ -147,3 +154,18 @@ for _row in _kairos.entity_table():  # an entity that the library gains is a met
     if not hasattr(Scene, _name) or _name == "body":
         if _name != "body":
             setattr(Scene, _name, _entity_method(_row))
+
+
+def _list_method(table, keys):
+    def add(self, name: str, **own_keys):
+        return self.add(table, name=name, **own_keys)
+
+    add.__name__ = table
+    add.__doc__ = f"An element of [[{table}]] of scene files. Own keys: {', '.join(keys)}."
+    return add
+
+
+for _table in _kairos.scene_keys(""):
+    _keys = [_key for _key in _kairos.scene_keys(_table) if _key != "name"]
+    if len(_keys) < len(_kairos.scene_keys(_table)) and not hasattr(Scene, _table):
+        setattr(Scene, _table, _list_method(_table, _keys))

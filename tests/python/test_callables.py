@@ -180,3 +180,10 @@ def test_a_recorder_hears_frames_and_events():
 
     with pytest.raises(LookupError, match="0"):
         kairos.run(drop(), recorder=Broken())
+
+
+def test_what_is_no_recorder_and_no_law_is_named():
+    with pytest.raises(TypeError, match=r"recorder: \[\] has neither frame"):
+        kairos.run(drop(), recorder=[])
+    with pytest.raises(TypeError, match="impact_law: is 3; allowed: a callable"):
+        kairos.run(drop(), impact_law=3)
