@@ -4,6 +4,7 @@
 #include "experiments/cli/experiment_options.hpp"
 #include "experiments/data_folders.hpp"
 #include "experiments/sweeps/sweep.hpp"
+#include "experiments/sweeps/sweep_progress.hpp"
 #include "experiments/sweeps/sweep_shards.hpp"
 #include "simulation/scene_library.hpp"
 
@@ -25,11 +26,13 @@ struct SweepCommand {
   std::string out;
   std::string shard;
   std::vector<std::string> merged;
+  std::vector<std::string> watched;
   SizeOptions size;
 
   void run() const;
   void merge() const;
   void run_part(const ExperimentSpec& experiment) const;
+  void tell_progress(const ExperimentSpec& experiment) const;
   void need_out(const char* option) const;
   void refuse_names() const;
   void print_summaries(const ExperimentSpec& experiment) const;
@@ -69,6 +72,13 @@ void SweepCommand::run_part(const ExperimentSpec& experiment) const {
              outcome.run_seconds, out);
 }
 
+void SweepCommand::tell_progress(const ExperimentSpec& experiment) const {
+  const SweepProgress progress = progress_of(experiment, watched);
+  fmt::print("{}: {} shards finished, {} begun; {} of {} runs, {:.1f} %\n", experiment.name,
+             progress.finished, progress.begun, progress.rows, progress.runs,
+             100.0 * static_cast<double>(progress.rows) / static_cast<double>(progress.runs));
+}
+
 /// A name is no spec; what it names is run by another command.
 void SweepCommand::refuse_names() const {
   std::error_code none;
@@ -98,6 +108,10 @@ void SweepCommand::run() const {
   }
   refuse_names();
   const ExperimentSpec experiment = read_experiment(spec, size.size());
+  if (!watched.empty()) {
+    tell_progress(experiment);
+    return;
+  }
   if (!shard.empty()) {
     run_part(experiment);
     return;
@@ -132,6 +146,10 @@ void add_sweep_command(CLI::App& app) {
       ->add_option(
           "--merge", command->merged,
           "make the tables of one machine of all shards: their folders, or a folder of these")
+      ->type_name("DIR...");
+  sweep
+      ->add_option("--progress", command->watched,
+                   "tell how far all shards of the spec are: their folders, or a folder of these")
       ->type_name("DIR...");
   sweep->footer(
       "On clusters: share/kairos/clusters has scripts for Slurm arrays and GNU parallel;\n"

@@ -92,7 +92,8 @@ def _keep_shard(files, folder):
             file.write(content)
 
 
-def sweep(spec, *, out=None, full=False, threads=0, client=None, shards=None) -> Sweep:
+def sweep(spec, *, out=None, full=False, threads=0, client=None, shards=None,
+          progress=None) -> Sweep:
     """Runs a sweep: the path of a spec (TOML), or its text.
 
     out: folder of the tables (default: a temporary one). threads: 0: one per core.
@@ -100,6 +101,7 @@ def sweep(spec, *, out=None, full=False, threads=0, client=None, shards=None) ->
         or this machine. A worker that dies loses nothing: its shards are run again elsewhere.
     shards: how many (default: four for each core of the cluster). Tables are the same bytes,
         whatever their number and wherever they were run.
+    progress: called with (shards done, shards) whenever one of the cluster's is.
     """
     with _folder(out) as folder:
         path = _spec_file(spec, folder if out is None else tempfile.mkdtemp(prefix="kairos-spec-"))
@@ -112,9 +114,11 @@ def sweep(spec, *, out=None, full=False, threads=0, client=None, shards=None) ->
                    for index in range(1, count + 1)}
         parts = tempfile.mkdtemp(prefix="kairos-shards-")
         try:
-            for future in as_completed(futures):
+            for done, future in enumerate(as_completed(futures), start=1):
                 _keep_shard(future.result(), os.path.join(parts, str(futures[future])))
                 future.release()  # its rows are on the disk
+                if progress is not None:
+                    progress(done, count)
             return merge(parts, out=folder)
         finally:
             shutil.rmtree(parts, ignore_errors=True)

@@ -196,3 +196,19 @@ TEST_CASE("a shard needs a folder, and merging needs shards alone", "[sweep][sha
   CHECK(work.kairos({work.spec, "--merge", work.folder.path("x"), "--out", "y"}).exit_code == 2);
   CHECK(work.kairos({}).exit_code == 2);
 }
+
+TEST_CASE("sweep: how far all shards are is told, while some are not there or were killed") {
+  const Workshop workshop;
+  const auto progress = [&] {
+    return workshop.kairos({workshop.spec, "--progress", workshop.folder.path("")}).out;
+  };
+  CHECK(progress() == "spec: 0 shards finished, 0 begun; 0 of 63 runs, 0.0 %\n");
+  REQUIRE(workshop.shard(1, 3, "shards/1").exit_code == 0);
+  REQUIRE(workshop.shard(3, 3, "shards/3").exit_code == 0);
+  CHECK(progress() == "spec: 2 shards finished, 0 begun; 42 of 63 runs, 66.7 %\n");
+  // Killed: rows without the file that comes last.
+  std::filesystem::remove(workshop.folder.path("shards/3/shard.csv"));
+  CHECK(progress() == "spec: 1 shards finished, 1 begun; 42 of 63 runs, 66.7 %\n");
+  CHECK(workshop.kairos({workshop.spec, "--progress", workshop.folder.path("none")}).exit_code ==
+        2);
+}

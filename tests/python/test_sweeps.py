@@ -183,7 +183,10 @@ def test_dask_loses_nothing_with_a_worker_killed(program, spec, tmp_path):
         killer = threading.Timer(0.3, os.kill, (victim, signal.SIGKILL))
         killer.start()
         started = time.monotonic()
-        result = kairos.sweep(spec, client=client, shards=12, out=tmp_path / "dask")
+        told = []
+        result = kairos.sweep(spec, client=client, shards=12, out=tmp_path / "dask",
+                              progress=lambda done, shards: told.append((done, shards)))
+        assert told == [(k, 12) for k in range(1, 13)]
         killer.join()
         assert time.monotonic() - started > 0.2  # it was at work
     kairos.sweep(spec, out=tmp_path / "one")
