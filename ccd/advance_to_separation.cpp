@@ -1,5 +1,6 @@
 #include "ccd/advancement.hpp"
 #include "ccd/common_point.hpp"
+#include "ccd/moving_cores.hpp"
 #include "ccd/pair_motion.hpp"
 #include "ccd/roundoff.hpp"
 #include "ccd/separation_function.hpp"
@@ -15,8 +16,10 @@ namespace {
 /// Against a half-space only its normal separates, and the gap along it says more than a speed.
 double safely_inside(PairKind kind, const PairMotion& motion, const Kinematics& k,
                      const Witness& witness, double& horizon) {
-  const bool plane = kind == PairKind::sphere_plane || kind == PairKind::box_plane;
-  const double depth = -witness.gap - k.error;
+  const bool plane = against_plane(kind);
+  // Along the witness the depth is an upper bound: that of cores is what was proven.
+  const double depth =
+      kind == PairKind::cores ? proven_depth(motion, k, witness) : -witness.gap - k.error;
   while (true) {
     const TurnBounds bounds = motion.bounds(k.t, horizon);
     double safe = 0.0;
@@ -62,7 +65,9 @@ TimeOfImpact advance_to_separation(const MovingShape& a, const MovingShape& b, c
     if (!(t + probe < duration)) {
       break;
     }
-    if (-witness.gap > enough) {  // deep: no point of b leaves a before depth / speed
+    const bool deep = -witness.gap > enough &&
+                      (kind != PairKind::cores || proven_depth(motion, k, witness) > 0.0);
+    if (deep) {  // no point of b leaves a before depth / speed
       t += probe;
       probe = 0.0;
       horizon = std::min(duration - t, 4.0 * horizon);

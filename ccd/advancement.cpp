@@ -3,7 +3,9 @@
 #include "ccd/box_witness.hpp"
 #include "ccd/closed_form.hpp"
 #include "ccd/contact_patch.hpp"
+#include "ccd/core_patch.hpp"
 #include "ccd/descent_answer.hpp"
+#include "ccd/moving_cores.hpp"
 #include "ccd/roundoff.hpp"
 #include "ccd/separation_function.hpp"
 
@@ -213,7 +215,7 @@ class Advancement {
     };
     try_along(between_balls(kind_, motion_, k));
     try_along(between_hulls(kind_, motion_, k, witness));
-    const bool plane = kind_ == PairKind::box_plane || kind_ == PairKind::sphere_plane;
+    const bool plane = against_plane(kind_);
     if (witness.frame != WitnessFrame::world && !(plane && motion_.turns_b())) {
       Witness still = witness;
       still.frame = WitnessFrame::world;
@@ -336,6 +338,14 @@ class Advancement {
       if (witness.gap >= -least_gap * at.k.error) {
         left = leaving_along(witness);
       }
+    }
+    if (kind_ == PairKind::cores && !(left > 0.0)) {
+      for_each_axis(motion_, at.k, at.witness, [&](const Vector3& n) {
+        const Witness witness = along_direction(motion_, at.k, n);
+        if (!(left > 0.0) && witness.gap >= -least_gap * at.k.error) {
+          left = leaving_along(witness);
+        }
+      });
     }
     return left;
   }
@@ -471,7 +481,17 @@ void Advancement::add_nearest_points(TimeOfImpact& answer, const Look& at) const
     answer.witness_b = origin_a + R * patch.on_b;
     return;
   }
-  if (kind_ == PairKind::box_plane) {
+  if (kind_ == PairKind::cores) {
+    const CorePatch patch = core_patch(core_pair(motion_, at.k), n);
+    const double rounded = motion_.core_a().rounding();
+    answer.witness_a = origin_a + patch.on_a() + rounded * n;
+    answer.witness_b = answer.witness_a + n * (at.gap() + motion_.error_reach());
+    return;
+  }
+  if (kind_ == PairKind::core_plane) {
+    const Vector3 lowest = lowest_point(motion_.core_a(), R.transpose() * n);
+    answer.witness_a = origin_a + R * lowest + motion_.core_a().rounding() * n;
+  } else if (kind_ == PairKind::box_plane) {
     // Roundoff of a rotated extent: 1024 u of the size, as in `measure_overlap`.
     answer.witness_a = origin_a + R * lowest_centroid(motion_.half_a(), R.transpose() * n,
                                                       1024.0 * u * motion_.half_a().sum());

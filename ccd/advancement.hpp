@@ -16,8 +16,8 @@ struct AdvancementOptions {
                                        const Window& window);
 
 /// Conservative advancement on separation functions with frozen witnesses, for every pair of shapes
-/// and every motion [Mirtich1996], [Zhang2006], [Tang2009]. Shapes in the order sphere, box,
-/// half-space; not two half-spaces.
+/// and every motion [Mirtich1996], [Zhang2006], [Tang2009]. Shapes in the order of their rank; not
+/// two half-spaces.
 [[nodiscard]] TimeOfImpact advance_to_impact(const MovingShape& a, const MovingShape& b,
                                              const Window& window,
                                              const AdvancementOptions& options);

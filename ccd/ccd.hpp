@@ -12,6 +12,7 @@
 #include "ccd/mesh/mesh_queries.hpp"
 #include "ccd/nearest_points.hpp"
 #include "ccd/pair_overlap.hpp"
+#include "ccd/placed_cores.hpp"
 #include "ccd/sat.hpp"
 #include "ccd/step_ends.hpp"
 #include "ccd/sweep_and_prune.hpp"

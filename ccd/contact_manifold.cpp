@@ -1,8 +1,10 @@
 #include "ccd/contact_manifold.hpp"
 
 #include "ccd/contact_patch.hpp"
+#include "ccd/core_of_shape.hpp"
 #include "ccd/nearest_points.hpp"
 #include "ccd/pair_overlap.hpp"
+#include "ccd/placed_cores.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -101,8 +103,11 @@ ContactManifold turned_round(ContactManifold manifold) {
 
 ContactManifold contact_manifold(const Shape& a, const Pose& pose_a, const Shape& b,
                                  const Pose& pose_b, double reach) {
-  if (a.index() > b.index()) {
+  if (shape_rank(a) > shape_rank(b)) {
     return turned_round(contact_manifold(b, pose_b, a, pose_a, reach));
+  }
+  if (is_convex_pair(a, b)) {
+    return core_manifold(a, pose_a, b, pose_b, reach);
   }
   if (std::holds_alternative<Sphere>(a)) {
     return ball_manifold(a, pose_a, b, pose_b, reach);

@@ -1,5 +1,6 @@
 #include "ccd/pair_motion.hpp"
 
+#include "ccd/core_of_shape.hpp"
 #include "ccd/plane_normal.hpp"
 #include "ccd/rotation_matrix.hpp"
 #include "ccd/roundoff.hpp"
@@ -134,6 +135,8 @@ PairMotion::PairMotion(const MovingShape& a, const MovingShape& b, const Window&
   radius_b_ = half_b_.norm() * (1.0 + 4.0 * u);
   error_reach_ = a.motion.error_radius + b.motion.error_radius;
   reach_ = (box_a.radius + box_b.radius) + error_reach_;
+  extent_a_ = half_a_.sum();
+  extent_b_ = half_b_.sum();
   if (const auto* half_space = std::get_if<HalfSpace>(&b.shape)) {
     plane_b_ = true;
     normal_b_ = half_space->normal_B;
@@ -142,6 +145,9 @@ PairMotion::PairMotion(const MovingShape& a, const MovingShape& b, const Window&
   }
   oriented_a_ = box_a.oriented;
   oriented_b_ = box_b.oriented;
+  if (is_convex_pair(a.shape, b.shape)) {
+    set_cores(a.shape, b.shape);
+  }
   turns_a_ = oriented_a_ && a.motion.rotation != RotationKind::fixed;
   turns_b_ = oriented_b_ && b.motion.rotation != RotationKind::fixed;
 
@@ -161,6 +167,27 @@ PairMotion::PairMotion(const MovingShape& a, const MovingShape& b, const Window&
     }
   }
   add_rotation_errors();
+}
+
+/// A rotated point of a core is off by the error of the rotation's entries times the sum of the
+/// magnitudes of its coordinates, in each component: along a unit direction by sqrt(3) times that.
+void PairMotion::set_cores(const Shape& a, const Shape& b) {
+  has_cores_ = true;
+  core_a_ = core_of(a);
+  oriented_a_ = core_a_.kind() != ConvexCore::Kind::point;
+  half_a_.setZero();
+  half_b_.setZero();
+  radius_a_ = core_a_.radius();
+  extent_a_ = 1.75 * core_a_.extent();
+  reach_ = core_a_.rounding();
+  if (!plane_b_) {
+    core_b_ = core_of(b);
+    oriented_b_ = core_b_.kind() != ConvexCore::Kind::point;
+    radius_b_ = core_b_.radius();
+    extent_b_ = 1.75 * core_b_.extent();
+    reach_ += core_b_.rounding();
+  }
+  reach_ += error_reach_;
 }
 
 namespace {
@@ -302,6 +329,7 @@ void PairMotion::evaluate(double t, Kinematics& k) const {
     orient(*motion_a_, rate_a_, s_a_ + t, turns_a_, k.R_WA, k.w_a);
   } else {
     k.w_a.setZero();
+    k.R_WA.setIdentity();
   }
   if (oriented_b_) {
     orient(*motion_b_, rate_b_, s_b_ + t, turns_b_, k.R_WB, k.w_b);
@@ -310,9 +338,10 @@ void PairMotion::evaluate(double t, Kinematics& k) const {
     }
   } else {
     k.w_b.setZero();
+    k.R_WB.setIdentity();
   }
   const double distance = k.d.lpNorm<1>();
-  const double extents = half_a_.sum() + half_b_.sum();
+  const double extents = extent_a_ + extent_b_;
   double rotation = rotation_error_ + rotation_error_rate_ * t;
   if (!constant_rates_) {
     for (const bool second : {false, true}) {

@@ -1,11 +1,13 @@
 #pragma once
 
+#include "ccd/convex_core.hpp"
 #include "core/contact_detector.hpp"
 
 namespace kairos::ccd {
 
 /// Two moving shapes at one instant of a window, world frame: what a separation function and its
-/// rate are made of. Shapes are rounded boxes: a ball is a box of extent 0 and its radius.
+/// rate are made of. Shapes are rounded boxes: a ball is a box of extent 0 and its radius; where
+/// one of a pair is a capsule, a cylinder, a cone or a hull, both are rounded cores.
 struct Kinematics {
   double t = 0.0;  ///< window time, s
   Vector3 d;       ///< origin of b from the origin of a, m
@@ -53,7 +55,11 @@ class PairMotion {
   /// Half extents of the rounded boxes (0 for spheres and half-spaces).
   [[nodiscard]] const Vector3& half_a() const { return half_a_; }
   [[nodiscard]] const Vector3& half_b() const { return half_b_; }
-  /// Radii of the balls around the boxes.
+  /// Are the bodies cores? Against a half-space only a is one.
+  [[nodiscard]] bool has_cores() const { return has_cores_; }
+  [[nodiscard]] const ConvexCore& core_a() const { return core_a_; }
+  [[nodiscard]] const ConvexCore& core_b() const { return core_b_; }
+  /// Radii of the balls around the boxes or cores.
   [[nodiscard]] double radius_a() const { return radius_a_; }
   [[nodiscard]] double radius_b() const { return radius_b_; }
   /// Sphere radii and error radii: what every separation is lowered by.
@@ -89,6 +95,7 @@ class PairMotion {
   [[nodiscard]] double time_to_cover(double length, double speed, const Kinematics& k) const;
 
  private:
+  void set_cores(const Shape& a, const Shape& b);
   void subtract_positions();
   void subtract_heights();
   void add_rotation_errors();
@@ -102,6 +109,11 @@ class PairMotion {
   double duration_;
   Vector3 half_a_ = Vector3::Zero();
   Vector3 half_b_ = Vector3::Zero();
+  ConvexCore core_a_;
+  ConvexCore core_b_;
+  bool has_cores_ = false;
+  double extent_a_ = 0.0;  ///< what roundings of a are parts of: sum of its half extents, m
+  double extent_b_ = 0.0;
   double radius_a_ = 0.0;
   double radius_b_ = 0.0;
   double reach_ = 0.0;

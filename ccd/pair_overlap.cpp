@@ -1,7 +1,9 @@
 #include "ccd/pair_overlap.hpp"
 
 #include "ccd/contact_patch.hpp"
+#include "ccd/core_of_shape.hpp"
 #include "ccd/nearest_points.hpp"
+#include "ccd/placed_cores.hpp"
 #include "ccd/roundoff.hpp"
 
 #include <cmath>
@@ -131,8 +133,11 @@ Overlap turned_round(Overlap answer) {
 }  // namespace
 
 bool shapes_overlap(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
-  if (a.index() > b.index()) {
+  if (shape_rank(a) > shape_rank(b)) {
     return shapes_overlap(b, pose_b, a, pose_a);
+  }
+  if (is_convex_pair(a, b)) {
+    return cores_overlap(a, pose_a, b, pose_b);
   }
   if (const auto* sphere = std::get_if<Sphere>(&a)) {
     if (const auto* other = std::get_if<Sphere>(&b)) {
@@ -153,8 +158,11 @@ bool shapes_overlap(const Shape& a, const Pose& pose_a, const Shape& b, const Po
 }
 
 Overlap measure_overlap(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
-  if (a.index() > b.index()) {
+  if (shape_rank(a) > shape_rank(b)) {
     return turned_round(measure_overlap(b, pose_b, a, pose_a));
+  }
+  if (is_convex_pair(a, b)) {
+    return measure_cores(a, pose_a, b, pose_b);
   }
   if (const auto* sphere = std::get_if<Sphere>(&a)) {
     if (const auto* other = std::get_if<Sphere>(&b)) {

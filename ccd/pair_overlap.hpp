@@ -5,7 +5,7 @@
 
 namespace kairos::ccd {
 
-/// The two questions about shapes at rest, for every combination of sphere, box and half-space.
+/// The two questions about shapes at rest, for every combination.
 /// Closed sets: touching is overlapping. Two half-spaces never meet.
 [[nodiscard]] bool shapes_overlap(const Shape& a, const Pose& pose_a, const Shape& b,
                                   const Pose& pose_b);

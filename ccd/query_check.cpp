@@ -25,6 +25,18 @@ void check_extent(const char* body, double extent) {
   }
 }
 
+void check_hull(const char* body, const Hull& hull) {
+  if (hull.core == nullptr || hull.core->vertices.size() < 4) {
+    refuse(body, "the hull has no polytope; allowed: what convex_hull returns");
+  }
+  check_extent(body, hull.core->width);
+  check_extent(body, hull.core->radius);
+  if (!(hull.rounding >= 0.0 && hull.rounding <= greatest_size)) {
+    refuse(body, fmt::format("the rounding is {}; allowed: from 0 to {} (m)", hull.rounding,
+                             greatest_size));
+  }
+}
+
 void check_shape(const char* body, const Shape& shape) {
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
     check_extent(body, sphere->radius);
@@ -32,6 +44,17 @@ void check_shape(const char* body, const Shape& shape) {
     for (int k = 0; k < 3; ++k) {
       check_extent(body, box->half_extents[k]);
     }
+  } else if (const auto* capsule = std::get_if<Capsule>(&shape)) {
+    check_extent(body, capsule->radius);
+    check_extent(body, capsule->length);
+  } else if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
+    check_extent(body, cylinder->radius);
+    check_extent(body, cylinder->length);
+  } else if (const auto* cone = std::get_if<Cone>(&shape)) {
+    check_extent(body, cone->radius);
+    check_extent(body, cone->height);
+  } else if (const auto* hull = std::get_if<Hull>(&shape)) {
+    check_hull(body, *hull);
   } else {
     const double square = std::get<HalfSpace>(shape).normal_B.squaredNorm();
     if (!(std::abs(square - 1.0) <= normal_tolerance)) {

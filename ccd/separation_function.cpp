@@ -20,6 +20,10 @@ constexpr double step_rounding = 64.0 * u;
 constexpr double beyond_tangent = 1.25;
 /// A step that uses so much of its horizon is good enough: no other can be more than twice as long.
 constexpr double well_used = 0.5;
+/// A support is off by so much of its core's extent and of the length of its direction.
+constexpr double support_rounding = 4.0 * u;
+/// How far ahead, rad, the highest point is asked for where several are at first.
+constexpr double kink = 1e-9;
 /// Horizons tried for one step: each halves the logarithm of what is open, so that 6 leave of 20
 /// orders of magnitude a factor of 2.
 constexpr int most_horizons = 6;
@@ -68,6 +72,15 @@ void SeparationFunction::add_supports(const Vector3& half, const Matrix3& axes, 
   }
 }
 
+void SeparationFunction::add_core(const ConvexCore& core, const Matrix3& R, double side,
+                                  const Vector3& g) {
+  CoreTerm& term = cores_[core_count_++];
+  term.core = &core;
+  term.m = R.transpose() * (side * scale_ * witness_.n);
+  term.rate = R.transpose() * (side * g);
+  term.support = core.support(term.m);
+}
+
 /// n turns at w: in its frame d moves at v - w x d, and an axis of X at (w_X - w) x axis. The
 /// second derivative of n . axis is at most |n x w'| |w'| while w' = w_X - w stays what it is,
 /// which it does in the world for constant rates.
@@ -113,11 +126,19 @@ void SeparationFunction::along_frame(const Vector3& w) {
   };
   double bend = 0.0;
   if (motion_.radius_a() > 0.0 && moves_a) {
-    add_supports(motion_.half_a(), k_.R_WA, g_a);
+    if (motion_.has_cores()) {
+      add_core(motion_.core_a(), k_.R_WA, 1.0, g_a);
+    } else {
+      add_supports(motion_.half_a(), k_.R_WA, g_a);
+    }
     bend += motion_.radius_a() * second_of_axis(turn_a, g_a, turn_.w_a, turn_.alpha_a);
   }
   if (motion_.radius_b() > 0.0 && moves_b) {
-    add_supports(motion_.half_b(), k_.R_WB, g_b);
+    if (motion_.has_cores()) {
+      add_core(motion_.core_b(), k_.R_WB, -1.0, g_b);
+    } else {
+      add_supports(motion_.half_b(), k_.R_WB, g_b);
+    }
     bend += motion_.radius_b() * second_of_axis(turn_b, g_b, turn_.w_b, turn_.alpha_b);
   }
   fixed_bend_ = 0.5 * bend;
@@ -127,10 +148,11 @@ void SeparationFunction::along_frame(const Vector3& w) {
 /// edges of each box count (eq. 4).
 void SeparationFunction::along_edges() {
   const Vector3 n = witness_.n * scale_;
-  const int edge_a = witness_.edge_a();
-  const int edge_b = witness_.edge_b();
-  const Vector3 a = k_.R_WA.col(edge_a);
-  const Vector3 b = witness_.sign * k_.R_WB.col(edge_b);
+  const bool cores = motion_.has_cores();
+  const int edge_a = cores ? 0 : witness_.edge_a();
+  const int edge_b = cores ? 0 : witness_.edge_b();
+  const Vector3 a = cores ? witness_.along_a : Vector3(k_.R_WA.col(edge_a));
+  const Vector3 b = cores ? witness_.along_b : Vector3(witness_.sign * k_.R_WB.col(edge_b));
   const Vector3 a_rate = k_.w_a.cross(a);
   const Vector3 b_rate = k_.w_b.cross(b);
   const Vector3 n_rate = a_rate.cross(b) + a.cross(b_rate);
@@ -145,7 +167,12 @@ void SeparationFunction::along_edges() {
   const Vector3 g_a = n_rate + n.cross(k_.w_a);
   const Vector3 g_b = n_rate + n.cross(k_.w_b);
   double weights = 0.0;
-  for (int i = 0; i < 3; ++i) {
+  if (cores) {
+    add_core(motion_.core_a(), k_.R_WA, 1.0, g_a);
+    add_core(motion_.core_b(), k_.R_WB, -1.0, g_b);
+    weights = motion_.radius_a() + motion_.radius_b();
+  }
+  for (int i = 0; i < 3 && !cores; ++i) {
     if (i != edge_a && motion_.half_a()[i] > 0.0) {
       const auto axis = k_.R_WA.col(i);
       terms_[count_++] = {motion_.half_a()[i], n.dot(axis), g_a.dot(axis)};
@@ -177,6 +204,13 @@ double SeparationFunction::tangent() const {
                             : term.s < 0.0 ? -term.rate
                                            : std::abs(term.rate));
   }
+  for (int i = 0; i < core_count_; ++i) {
+    const CoreTerm& term = cores_[i];
+    // Where several points are highest, one of those that rise most.
+    const double size = term.rate.norm();
+    const Vector3 ahead = size > 0.0 ? Vector3(term.m + (kink / size) * term.rate) : term.m;
+    slope -= term.core->support_point(ahead).dot(term.rate);
+  }
   return slope;
 }
 
@@ -185,6 +219,12 @@ double SeparationFunction::chord(double h) const {
   for (int i = 0; i < count_; ++i) {
     const Term& term = terms_[i];
     growth += term.weight * (std::abs(term.s + term.rate * h) - std::abs(term.s));
+  }
+  for (int i = 0; i < core_count_; ++i) {
+    const CoreTerm& term = cores_[i];
+    const Vector3 end = term.m + h * term.rate;
+    growth += term.core->support(end) - term.support +
+              support_rounding * term.core->extent() * (scale_ + end.lpNorm<1>());
   }
   return slope_ - growth / h;
 }
@@ -219,7 +259,7 @@ double SeparationFunction::rate() const { return (least_slope_ + rate_error_) / 
 
 double SeparationFunction::step_within(double reach) const {
   // Over [0, reach] every kinked term stays below its chord.
-  const double slope = (count_ > 0 ? chord(reach) : slope_) - rate_error_;
+  const double slope = (has_terms() ? chord(reach) : slope_) - rate_error_;
   return std::min(reach, first_root(value_ * (1.0 - root_rounding), slope, curvature(reach)));
 }
 
@@ -263,7 +303,7 @@ double SeparationFunction::advance(double horizon) const {
   if (!(value_ > 0.0)) {
     return 0.0;
   }
-  if (count_ == 0 && !direction_turns()) {  // a quadratic, whatever the horizon
+  if (!has_terms() && !direction_turns()) {  // a quadratic, whatever the horizon
     const double slope = slope_ - rate_error_;
     const double root = first_root(value_ * (1.0 - root_rounding), slope, curvature(horizon));
     return std::min(horizon, root) * (1.0 - step_rounding);
@@ -293,14 +333,14 @@ double SeparationFunction::advance_from_touch(double horizon) const {
   double reach = turning > 0.0 ? std::min(horizon, 1.0 / turning) : horizon;
   for (int attempt = 0; attempt < 60; ++attempt) {  // a quarter each time: to 1e-36 of it
     if (!std::isfinite(reach)) {
-      if (count_ > 0 || direction_turns()) {
+      if (has_terms() || direction_turns()) {
         reach = 1.0;
       } else if (curvature(reach) >= 0.0 && slope_ > rate_error_) {
         return infinity;
       }
     }
     const double second = curvature(reach);
-    const double slope = (count_ > 0 ? chord(reach) : slope_) - rate_error_;
+    const double slope = (has_terms() ? chord(reach) : slope_) - rate_error_;
     const double discriminant = slope * slope - 4.0 * start * second;
     const double root = std::sqrt(discriminant);
     // It may go down at first by what rounding hides.
@@ -326,7 +366,7 @@ double SeparationFunction::least_within(double reach) const {
     return -infinity;
   }
   const double second = std::min(0.0, curvature(reach));
-  const double slope = std::min(0.0, (count_ > 0 ? chord(reach) : slope_) - rate_error_);
+  const double slope = std::min(0.0, (has_terms() ? chord(reach) : slope_) - rate_error_);
   return (value_ + (slope + second * reach) * reach) / scale_;
 }
 

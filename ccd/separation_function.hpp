@@ -8,7 +8,8 @@ namespace kairos::ccd {
 ///
 ///   f(h) = n(h) . d(h) - sum_k A_k |n(h) . a_k(h)| - sum_k B_k |n(h) . b_k(h)| - reach
 ///
-/// with half extents A, B and axes a_k, b_k. f(h) > 0 proves that they are apart at t + h. A
+/// with half extents A, B and axes a_k, b_k; of cores their supports take the place of the sums:
+/// n . d - s_a(R_A' n) - s_b(-R_B' n) - reach. f(h) > 0 proves that they are apart at t + h. A
 /// quadratic below f (eq. 9) comes from the exact first derivatives and bounds of the second ones
 /// [Tang2009], [Zhang2006]; `advance` returns how far it stays positive.
 class SeparationFunction {
@@ -38,7 +39,18 @@ class SeparationFunction {
     double rate = 0.0;
   };
 
+  /// The support of a core along m + m' h: convex in h, so that it is below its chord.
+  struct CoreTerm {
+    const ConvexCore* core = nullptr;
+    Vector3 m;
+    Vector3 rate;
+    double support = 0.0;
+  };
+
   void add_supports(const Vector3& half, const Matrix3& axes, const Vector3& g);
+  /// `side`: 1 for a, whose support is along n, -1 for b. g: the rate of n seen from the body.
+  void add_core(const ConvexCore& core, const Matrix3& R, double side, const Vector3& g);
+  [[nodiscard]] bool has_terms() const { return count_ + core_count_ > 0; }
   void along_frame(const Vector3& w_frame);
   void along_edges();
   /// Slope of the sum of terms: the greatest at h = 0, or of the chord over [0, h].
@@ -86,6 +98,8 @@ class SeparationFunction {
   double c_ = 0.0;             ///< |c|
   int count_ = 0;
   Term terms_[6];
+  int core_count_ = 0;
+  CoreTerm cores_[2];
 };
 
 }  // namespace kairos::ccd

@@ -13,7 +13,7 @@
 namespace kairos::ccd {
 namespace {
 
-bool in_order(const Shape& a, const Shape& b) { return a.index() <= b.index(); }
+bool in_order(const Shape& a, const Shape& b) { return shape_rank(a) <= shape_rank(b); }
 
 bool both_half_spaces(const Shape& a, const Shape& b) {
   return std::holds_alternative<HalfSpace>(a) && std::holds_alternative<HalfSpace>(b);

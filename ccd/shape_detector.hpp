@@ -22,7 +22,7 @@ class ShapeDetector : public ContactDetector {
                                    const Window& window) const final;
 
  private:
-  /// Shapes come in the order sphere, box, half-space, and are never two half-spaces.
+  /// Shapes come in the order of their rank, and are never two half-spaces.
   [[nodiscard]] virtual TimeOfImpact ordered_time_of_impact(const MovingShape& a,
                                                             const MovingShape& b,
                                                             const Window& window,

@@ -100,9 +100,11 @@ Reach swept_reach(const Shape& shape, const Motion& motion, double s0, double s1
                                                   : Reach{-infinity, infinity};
   }
   Reach reach = translation_reach(motion.position, s0, s1, n);
-  const auto* box = std::get_if<Box>(&shape);
+  const auto* sphere = std::get_if<Sphere>(&shape);
+  // What is no ball reaches no further than the box around it.
   const double extent =
-      (box != nullptr ? turning_extent(*box, motion, s0, s1, n) : std::get<Sphere>(shape).radius) *
+      (sphere != nullptr ? sphere->radius
+                         : turning_extent(bounding_box(shape), motion, s0, s1, n)) *
           (1.0 + 8.0 * u) +
       motion.error_radius;
   const double rounding =

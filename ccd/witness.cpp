@@ -1,6 +1,8 @@
 #include "ccd/witness.hpp"
 
 #include "ccd/box_witness.hpp"
+#include "ccd/core_of_shape.hpp"
+#include "ccd/moving_cores.hpp"
 #include "ccd/roundoff.hpp"
 
 #include <algorithm>
@@ -46,7 +48,9 @@ Witness from_plane(const PairMotion& motion, const Kinematics& k) {
   witness.n = -k.R_WB.col(1);
   double support = motion.reach();
   if (motion.radius_a() > 0.0) {
-    support += motion.half_a().dot((k.R_WA.transpose() * witness.n).cwiseAbs());
+    const Vector3 n_A = k.R_WA.transpose() * witness.n;
+    support +=
+        motion.has_cores() ? motion.core_a().support(n_A) : motion.half_a().dot(n_A.cwiseAbs());
   }
   witness.gap = witness.n.dot(k.d) - support;
   return witness;
@@ -75,6 +79,9 @@ double hull_support(const Vector3& half, const Matrix3& R, bool spins, const Vec
 }  // namespace
 
 PairKind pair_kind(const Shape& a, const Shape& b) {
+  if (is_convex_pair(a, b)) {
+    return std::holds_alternative<HalfSpace>(b) ? PairKind::core_plane : PairKind::cores;
+  }
   const bool sphere = std::holds_alternative<Sphere>(a);
   if (std::holds_alternative<HalfSpace>(b)) {
     return sphere ? PairKind::sphere_plane : PairKind::box_plane;
@@ -88,7 +95,7 @@ PairKind pair_kind(const Shape& a, const Shape& b) {
 Witness between_balls(PairKind kind, const PairMotion& motion, const Kinematics& k) {
   const double reach = motion.reach() + motion.radius_a() + motion.radius_b();
   Witness witness;
-  if (kind == PairKind::sphere_plane || kind == PairKind::box_plane) {
+  if (against_plane(kind)) {
     witness.n = -k.R_WB.col(1);
     // A plane that turns has no ball around it.
     witness.gap = motion.turns_b() ? -infinity : witness.n.dot(k.d) - reach;
@@ -104,7 +111,7 @@ Witness between_hulls(PairKind kind, const PairMotion& motion, const Kinematics&
   Witness best;
   best.gap = -infinity;
   best.frame = WitnessFrame::hulls;
-  const bool plane = kind == PairKind::sphere_plane || kind == PairKind::box_plane;
+  const bool plane = against_plane(kind);
   if ((motion.turns_a() && !motion.spins_a()) ||
       (motion.turns_b() && (plane || !motion.spins_b()))) {
     return best;
@@ -117,10 +124,14 @@ Witness between_hulls(PairKind kind, const PairMotion& motion, const Kinematics&
     n /= !plane && n.dot(k.d) < 0.0 ? -length : length;
     double gap = n.dot(k.d) - motion.reach();
     if (motion.radius_a() > 0.0) {
-      gap -= hull_support(motion.half_a(), k.R_WA, motion.turns_a(), k.w_a, n);
+      gap -= motion.has_cores()
+                 ? core_hull_support(motion.core_a(), k.R_WA, motion.turns_a(), k.w_a, n)
+                 : hull_support(motion.half_a(), k.R_WA, motion.turns_a(), k.w_a, n);
     }
     if (motion.radius_b() > 0.0) {
-      gap -= hull_support(motion.half_b(), k.R_WB, motion.turns_b(), k.w_b, n);
+      gap -= motion.has_cores()
+                 ? core_hull_support(motion.core_b(), k.R_WB, motion.turns_b(), k.w_b, -n)
+                 : hull_support(motion.half_b(), k.R_WB, motion.turns_b(), k.w_b, n);
     }
     if (gap > best.gap) {
       best.gap = gap;
@@ -149,7 +160,7 @@ Witness between_hulls(PairKind kind, const PairMotion& motion, const Kinematics&
 }
 
 double clear_of_balls(PairKind kind, const PairMotion& motion) {
-  const bool plane = kind == PairKind::sphere_plane || kind == PairKind::box_plane;
+  const bool plane = against_plane(kind);
   if (plane && motion.turns_b()) {
     return 0.0;
   }
@@ -187,7 +198,10 @@ Witness find_witness(PairKind kind, const PairMotion& motion, const Kinematics& 
       return from_box(motion, k);
     case PairKind::sphere_plane:
     case PairKind::box_plane:
+    case PairKind::core_plane:
       return from_plane(motion, k);
+    case PairKind::cores:
+      return between_cores(motion, k);
     case PairKind::box_box:
       break;
   }
@@ -196,8 +210,14 @@ Witness find_witness(PairKind kind, const PairMotion& motion, const Kinematics& 
 
 bool proven_overlap(PairKind kind, const PairMotion& motion, const Kinematics& k,
                     const Witness& witness) {
-  return kind == PairKind::box_box ? boxes_proven_overlapping(motion, k, witness)
-                                   : witness.gap < -k.error;
+  switch (kind) {
+    case PairKind::box_box:
+      return boxes_proven_overlapping(motion, k, witness);
+    case PairKind::cores:
+      return cores_proven_overlapping(motion, k, witness);
+    default:
+      return witness.gap < -k.error;
+  }
 }
 
 double first_root(double f, double b, double c) {

@@ -20,7 +20,17 @@ struct Witness {
   double gap = 0.0;              ///< separation along it, off by `Kinematics::error` at most, m
   int axis = none;               ///< two boxes only: which of the 15 it is
   double sign = 1.0;             ///< two boxes only: as in `AxisSeparation`
-  double sine = 1.0;             ///< two boxes, edges: of the angle between them
+  double sine = 1.0;             ///< of edges: of the angle between them
+  /// Of edges: their directions, world frame, such that n is along their cross product.
+  Vector3 along_a = Vector3::UnitX();
+  Vector3 along_b = Vector3::UnitX();
+
+  /// Two cores only: they are proven to overlap by so much, 0 if nothing is proven; the distance of
+  /// two of their points, and these, from the origin of a, world axes, m.
+  double depth = 0.0;
+  double upper = 0.0;
+  Vector3 on_a = Vector3::Zero();
+  Vector3 on_b = Vector3::Zero();
 
   static constexpr int none = -1;
   [[nodiscard]] int edge_a() const { return (axis - 6) / 3; }
@@ -28,10 +38,22 @@ struct Witness {
 };
 
 /// Which witness a pair of shapes needs.
-enum class PairKind { sphere_sphere, sphere_box, sphere_plane, box_box, box_plane };
+enum class PairKind {
+  sphere_sphere,
+  sphere_box,
+  sphere_plane,
+  box_box,
+  box_plane,
+  cores,       ///< at least one is a capsule, a cylinder, a cone or a hull
+  core_plane,  ///< such a one and a half-space
+};
+[[nodiscard]] constexpr bool against_plane(PairKind kind) {
+  return kind == PairKind::sphere_plane || kind == PairKind::box_plane ||
+         kind == PairKind::core_plane;
+}
 [[nodiscard]] PairKind pair_kind(const Shape& a, const Shape& b);
 
-/// The witness of greatest separation; shapes in the order sphere, box, half-space.
+/// The witness of greatest separation; shapes in the order of their rank.
 [[nodiscard]] Witness find_witness(PairKind kind, const PairMotion& motion, const Kinematics& k);
 /// The witness of the balls around the shapes (`gap` is negative infinity if there is none).
 [[nodiscard]] Witness between_balls(PairKind kind, const PairMotion& motion, const Kinematics& k);

@@ -50,6 +50,23 @@ class BodyCheck {
       need((box->half_extents.array() > 0.0).all() && box->half_extents.allFinite(), "half_extents",
            "must all be > 0 and finite");
     }
+    if (const auto* capsule = std::get_if<Capsule>(&body_.shape)) {
+      need(positive(capsule->radius), "radius", "must be > 0 and finite");
+      need(positive(capsule->length), "length", "must be > 0 and finite");
+    }
+    if (const auto* cylinder = std::get_if<Cylinder>(&body_.shape)) {
+      need(positive(cylinder->radius), "radius", "must be > 0 and finite");
+      need(positive(cylinder->length), "length", "must be > 0 and finite");
+    }
+    if (const auto* cone = std::get_if<Cone>(&body_.shape)) {
+      need(positive(cone->radius), "radius", "must be > 0 and finite");
+      need(positive(cone->height), "height", "must be > 0 and finite");
+    }
+    if (const auto* hull = std::get_if<Hull>(&body_.shape)) {
+      need(hull->core != nullptr, "points", "are missing");
+      need(hull->rounding >= 0.0 && std::isfinite(hull->rounding), "rounding",
+           "must be >= 0 and finite");
+    }
   }
 
   void check_state() const {

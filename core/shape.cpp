@@ -2,6 +2,8 @@
 
 #include "core/error.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace kairos {
@@ -17,27 +19,58 @@ struct Match : Cases... {
 template <typename... Cases>
 Match(Cases...) -> Match<Cases...>;
 
+/// About its middle: a cylinder and a ball that is cut in two.
+Vector3 capsule_inertia(const Capsule& capsule, double mass) {
+  const double r = capsule.radius;
+  const double L = capsule.length;
+  const double ball = mass * (4.0 * r) / (4.0 * r + 3.0 * L);
+  const double middle = mass - ball;
+  const double along = 0.5 * middle * r * r + 0.4 * ball * r * r;
+  const double across =
+      middle * (L * L / 12.0 + 0.25 * r * r) + ball * (0.4 * r * r + 0.25 * L * L + 0.375 * L * r);
+  return {across, along, across};
+}
+
 }  // namespace
 
 std::string_view shape_name(const Shape& shape) {
   return std::visit(Match{[](const Sphere&) -> std::string_view { return "sphere"; },
                           [](const Box&) -> std::string_view { return "box"; },
-                          [](const HalfSpace&) -> std::string_view { return "half-space"; }},
+                          [](const HalfSpace&) -> std::string_view { return "half-space"; },
+                          [](const Capsule&) -> std::string_view { return "capsule"; },
+                          [](const Cylinder&) -> std::string_view { return "cylinder"; },
+                          [](const Cone&) -> std::string_view { return "cone"; },
+                          [](const Hull&) -> std::string_view { return "hull"; }},
                     shape);
 }
 
 double bounding_radius(const Shape& shape) {
-  return std::visit(Match{[](const Sphere& sphere) { return sphere.radius; },
-                          [](const Box& box) { return box.half_extents.norm(); },
-                          [](const HalfSpace&) { return infinity; }},
-                    shape);
+  return std::visit(
+      Match{[](const Sphere& sphere) { return sphere.radius; },
+            [](const Box& box) { return box.half_extents.norm(); },
+            [](const HalfSpace&) { return infinity; },
+            [](const Capsule& capsule) { return 0.5 * capsule.length + capsule.radius; },
+            [](const Cylinder& c) { return std::hypot(c.radius, 0.5 * c.length); },
+            [](const Cone& cone) {
+              return std::max(0.75 * cone.height, std::hypot(cone.radius, 0.25 * cone.height));
+            },
+            [](const Hull& hull) { return hull.core->radius + hull.rounding; }},
+      shape);
 }
 
 double smallest_extent(const Shape& shape) {
-  return std::visit(Match{[](const Sphere& sphere) { return 2.0 * sphere.radius; },
-                          [](const Box& box) { return 2.0 * box.half_extents.minCoeff(); },
-                          [](const HalfSpace&) { return infinity; }},
-                    shape);
+  return std::visit(
+      Match{[](const Sphere& sphere) { return 2.0 * sphere.radius; },
+            [](const Box& box) { return 2.0 * box.half_extents.minCoeff(); },
+            [](const HalfSpace&) { return infinity; },
+            [](const Capsule& capsule) { return 2.0 * capsule.radius; },
+            [](const Cylinder& c) { return std::min(2.0 * c.radius, c.length); },
+            [](const Cone& cone) {  // between the base's rim and the side across from it
+              const double side = std::hypot(cone.radius, cone.height);
+              return std::min(cone.height, 2.0 * cone.radius * cone.height / side);
+            },
+            [](const Hull& hull) { return hull.core->width + 2.0 * hull.rounding; }},
+      shape);
 }
 
 Vector3 solid_inertia(const Shape& shape, double mass) {
@@ -50,7 +83,21 @@ Vector3 solid_inertia(const Shape& shape, double mass) {
               return (mass / 3.0) * (Vector3::Constant(squares.sum()) - squares);
             },
             // A half-space is never free: it has no finite inertia, and nothing asks for it.
-            [](const HalfSpace&) -> Vector3 { return Vector3::Zero(); }},
+            [](const HalfSpace&) -> Vector3 { return Vector3::Zero(); },
+            [mass](const Capsule& capsule) -> Vector3 { return capsule_inertia(capsule, mass); },
+            [mass](const Cylinder& c) -> Vector3 {
+              const double along = 0.5 * mass * c.radius * c.radius;
+              const double across = mass * c.length * c.length / 12.0 + 0.5 * along;
+              return {across, along, across};
+            },
+            [mass](const Cone& cone) -> Vector3 {
+              const double square = cone.radius * cone.radius;
+              const double across = 0.0375 * mass * (4.0 * square + cone.height * cone.height);
+              return {across, 0.3 * mass * square, across};
+            },
+            [mass](const Hull& hull) -> Vector3 {
+              return (mass / hull.core->volume) * hull.core->moments;
+            }},
       shape);
 }
 
@@ -60,6 +107,23 @@ Box bounding_box(const Shape& shape) {
             [](const Box& box) { return box; },
             [](const HalfSpace&) -> Box {
               throw InputError("", 0, "bounds", "a half-space is unbounded and has no box");
+            },
+            [](const Capsule& capsule) {
+              const double r = capsule.radius;
+              return Box{{r, 0.5 * capsule.length + r, r}};
+            },
+            [](const Cylinder& c) {
+              return Box{{c.radius, 0.5 * c.length, c.radius}};
+            },
+            [](const Cone& cone) {
+              return Box{{cone.radius, 0.75 * cone.height, cone.radius}};
+            },
+            [](const Hull& hull) {
+              Vector3 half = Vector3::Zero();
+              for (const Vector3& x : hull.core->vertices) {
+                half = half.cwiseMax(x.cwiseAbs());
+              }
+              return Box{half + Vector3::Constant(hull.rounding)};
             }},
       shape);
 }

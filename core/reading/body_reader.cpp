@@ -5,6 +5,7 @@
 #include "core/reading/scene_keys.hpp"
 #include "core/reading/scene_limits.hpp"
 #include "core/reading/scene_name.hpp"
+#include "core/reading/shape_reader.hpp"
 
 #include <fmt/format.h>
 
@@ -16,7 +17,6 @@ namespace kairos {
 inline namespace core {
 namespace {
 
-constexpr std::string_view shape_names[] = {"sphere", "box", "half-space"};
 constexpr std::string_view collision_names[] = {"square", "round"};
 
 const EntityType& read_entity_type(const TableReader& table) {
@@ -36,37 +36,6 @@ std::shared_ptr<const Entity> make_entity(const TableReader& table, const Entity
     values.push_back(item ? item->number(range) : key.default_value);
   }
   return type.make(values);
-}
-
-/// The kind of shape: what is said, or what the size that is given implies.
-std::string_view shape_kind(const TableReader& table) {
-  if (const auto item = table.find("shape")) {
-    return shape_names[item->choice(shape_names)];
-  }
-  if (table.has("radius") == table.has("half_extents")) {
-    table.fail("shape", table.has("radius")
-                            ? "cannot be told: both radius and half_extents are given"
-                            : "is missing; needed: shape, or radius (a sphere), or half_extents "
-                              "(a box)");
-  }
-  return table.has("radius") ? "sphere" : "box";
-}
-
-Shape read_shape(const TableReader& table) {
-  const std::string_view kind = shape_kind(table);
-  if (kind != "sphere" && table.has("radius")) {
-    table.fail("radius", fmt::format("a {} has no radius", kind));
-  }
-  if (kind != "box" && table.has("half_extents")) {
-    table.fail("half_extents", fmt::format("a {} has no half_extents", kind));
-  }
-  if (kind == "sphere") {
-    return Sphere{table.need("radius", limits::extent.text()).number(limits::extent)};
-  }
-  if (kind == "box") {
-    return Box{table.need("half_extents", "an array of 3 numbers").vector(limits::extent)};
-  }
-  return HalfSpace{};
 }
 
 Quaternion from_components(const Item& item) {
@@ -144,6 +113,13 @@ Bounds read_bounds(const TableReader& table, const Body& body, Bounds fallback) 
 
 void read_inertia(const TableReader& table, Body& body) {
   const auto item = table.find("inertia");
+  const auto* hull = std::get_if<Hull>(&body.shape);
+  if (!item && hull != nullptr && hull->rounding > 0.0) {
+    table.fail(
+        "inertia",
+        "is missing; needed for a hull with rounding: that of the polytope inside is not its "
+        "own");
+  }
   if (!item) {
     body.inertia = solid_inertia(body.shape, body.mass);
     return;
@@ -156,6 +132,8 @@ void read_inertia(const TableReader& table, Body& body) {
   }
 }
 
+bool is_identity(const Quaternion& q) { return q.vec().isZero(0.0); }
+
 /// A key that this kind of body does not take.
 void refuse(const TableReader& table, std::string_view key, const std::string& reason) {
   if (table.has(key)) {
@@ -165,8 +143,9 @@ void refuse(const TableReader& table, std::string_view key, const std::string& r
 
 void read_free(const TableReader& table, Body& body) {
   if (std::holds_alternative<HalfSpace>(body.shape)) {
-    table.fail("shape", fmt::format("a half-space cannot move freely: a {} needs a sphere or a box",
-                                    body.entity->kind()));
+    table.fail("shape",
+               fmt::format("a half-space cannot move freely: a {} needs a body with an end",
+                           body.entity->kind()));
   }
   refuse(table, "drive",
          fmt::format("a {} moves freely; only fixed and driven bodies take a drive",
@@ -254,12 +233,19 @@ Body read_body(const Item& item, const BodyDefaults& defaults) {
   const EntityType& type = read_entity_type(table);
   refuse_unknown_keys(table, type);
   body.entity = make_entity(table, type);
-  body.shape = read_shape(table);
+  const WrittenShape written = read_shape(table, defaults.directory);
+  body.shape = written.shape;
   body.bounds = read_bounds(table, body, defaults.bounds);
   if (const auto position = table.find("position")) {
     body.initial.pose.position = position->vector(limits::position);
   }
   body.initial.pose.orientation = read_orientation(table);
+  if (!is_identity(written.axes)) {
+    refuse(table, "drive",
+           "the hull's points are not told in its principal axes, in which it is driven; allowed: "
+           "points in these, or a body without a drive");
+    body.initial.pose.orientation = (body.initial.pose.orientation * written.axes).normalized();
+  }
   read_normal(table, body);
   const auto number = [&table](std::string_view key, const Range& range, double fallback) {
     const auto value = table.find(key);

@@ -7,6 +7,7 @@
 #include "core/nearest_name.hpp"
 #include "core/reading/scene_keys.hpp"
 #include "core/reading/scene_limits.hpp"
+#include "core/solid_size.hpp"
 
 #include <fmt/format.h>
 
@@ -128,21 +129,13 @@ double sphere_radius(const Shape& shape) {
   return sphere != nullptr ? sphere->radius : 0.0;
 }
 
-/// Area seen from ahead; of a box the mean over all directions, a quarter of its surface (Cauchy).
+/// Area seen from ahead; of what is no ball the mean over all directions, a quarter of its surface
+/// (Cauchy).
 double seen_area(const Shape& shape) {
-  if (const auto* box = std::get_if<Box>(&shape)) {
-    const Vector3& h = box->half_extents;
-    return 2.0 * (h.x() * h.y() + h.y() * h.z() + h.z() * h.x());
+  if (const double r = sphere_radius(shape); r > 0.0) {
+    return std::numbers::pi * r * r;
   }
-  return std::numbers::pi * sphere_radius(shape) * sphere_radius(shape);
-}
-
-double solid_volume(const Shape& shape) {
-  if (const auto* box = std::get_if<Box>(&shape)) {
-    return 8.0 * box->half_extents.prod();
-  }
-  const double r = sphere_radius(shape);
-  return 4.0 / 3.0 * std::numbers::pi * r * r * r;
+  return 0.25 * surface_area(shape);
 }
 
 void read_quadratic_drag(const Reading& reading) {

@@ -5,6 +5,7 @@
 #include "core/reading/scene_keys.hpp"
 #include "core/reading/scene_limits.hpp"
 #include "core/reading/scene_name.hpp"
+#include "core/solid_size.hpp"
 
 #include <fmt/format.h>
 
@@ -59,7 +60,7 @@ Body read_template(const Item& item, const TableReader& table, const BodyDefault
   const Value value{one, item.value().file, item.value().line};
   Body body = read_body(Item(value, item.path()), defaults);
   if (std::holds_alternative<HalfSpace>(body.shape)) {
-    table.fail("shape", "a half-space fills half the world; allowed: sphere, box");
+    table.fail("shape", "a half-space fills half the world; allowed: what has an end");
   }
   if (body.entity->mobility() == Mobility::driven) {
     table.fail("entity", fmt::format("a {} needs a drive of its own; allowed: what moves freely or "
@@ -131,11 +132,7 @@ std::vector<Vector3> place(const TableReader& table, const Region& region,
 }
 
 void resize(Body& body, double size) {
-  if (auto* sphere = std::get_if<Sphere>(&body.shape)) {
-    sphere->radius *= size;
-  } else {
-    std::get<Box>(body.shape).half_extents *= size;
-  }
+  body.shape = resized(body.shape, size);
   if (body.mass > 0.0) {  // of the same density
     body.mass *= std::pow(size, 3);
     body.inertia *= std::pow(size, 5);

@@ -91,7 +91,10 @@ void add_toi_command(CLI::App& app) {
       "Columns, SI units, world frame: id; then for each of a_ and b_: half-extents hx,hy,hz;\n"
       "centre px,py,pz; unit quaternion qw,qx,qy,qz (body to world); velocity vx,vy,vz;\n"
       "acceleration ax,ay,az; angular velocity wx,wy,wz; and duration. Optional a_shape, b_shape:\n"
-      "box (default), sphere (radius in hx), half-space (through p, normal the body's +y).\n"
+      "box (default), sphere (radius in hx), half-space (through p, normal the body's +y),\n"
+      "capsule, cylinder, cone (radius in hx, half the length or height in hy, along the body's "
+      "y),\n"
+      "hull (rounding in hx; a_points, b_points: \"x y z; x y z; ...\", p their centroid).\n"
       "Answer: id,status,t_lo,t_hi,gap,nx,ny,nz,evaluations in the same order.");
   toi->callback([command] { command->run(); });
 }

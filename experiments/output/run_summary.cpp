@@ -54,6 +54,15 @@ void add_scene(JsonWriter& json, const Scene& scene) {
   json.close();
 }
 
+/// The vertices of a polytope, "x y z; x y z; ...", body axes.
+std::string written(const Polytope& polytope) {
+  std::string text;
+  for (const Vector3& x : polytope.vertices) {
+    text += fmt::format("{}{} {} {}", text.empty() ? "" : "; ", x.x(), x.y(), x.z());
+  }
+  return text;
+}
+
 /// What a picture of the run needs to know of each body; `kairos render` reads it.
 void add_bodies(JsonWriter& json, const Model& model) {
   constexpr std::string_view movers[] = {"fixed", "driven", "free"};
@@ -72,6 +81,10 @@ void add_bodies(JsonWriter& json, const Model& model) {
       json.number("hx", h.x());
       json.number("hy", h.y());
       json.number("hz", h.z());
+    }
+    if (const auto* hull = std::get_if<Hull>(&body.shape)) {
+      json.number("rounding", hull->rounding);
+      json.text("vertices", written(*hull->core));
     }
     json.text("bounds", bounds_name(body.bounds));
     json.text("moves", movers[static_cast<std::size_t>(model.mobility(i))]);

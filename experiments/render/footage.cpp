@@ -118,6 +118,36 @@ class Summary {
     return {normal};
   }
 
+  [[nodiscard]] Hull hull(const Fields& body) const {
+    std::vector<Vector3> points;
+    Vector3 point;
+    int coordinate = 0;
+    std::string_view rest = field(body, "vertices");
+    while (!rest.empty()) {
+      const std::size_t end = rest.find_first_of(" ;");
+      const std::string_view word = rest.substr(0, end);
+      rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+      if (word.empty()) {
+        continue;
+      }
+      const auto x = parse_number(std::string(word));
+      if (!x) {
+        fail(body, "vertices", fmt::format("holds {}; allowed: numbers", word));
+      }
+      point[coordinate++] = *x;
+      if (coordinate == 3) {
+        points.push_back(point);
+        coordinate = 0;
+      }
+    }
+    const auto rounding = parse_number(field(body, "rounding"));
+    try {
+      return {convex_hull(points).polytope, rounding.value_or(0.0)};
+    } catch (const std::exception& error) {
+      fail(body, "vertices", error.what());
+    }
+  }
+
   [[nodiscard]] Actor actor(const Fields& body) const {
     Actor actor;
     actor.name = body.name;
@@ -129,8 +159,19 @@ class Summary {
       actor.shape = Box{{extent(body, "hx"), extent(body, "hy"), extent(body, "hz")}};
     } else if (shape == "half-space") {
       actor.shape = half_space(body);
+    } else if (shape == "capsule") {
+      const double radius = extent(body, "hx");
+      actor.shape = Capsule{radius, 2.0 * (extent(body, "hy") - radius)};
+    } else if (shape == "cylinder") {
+      actor.shape = Cylinder{extent(body, "hx"), 2.0 * extent(body, "hy")};
+    } else if (shape == "cone") {
+      actor.shape = Cone{extent(body, "hx"), extent(body, "hy") / 0.75};
+    } else if (shape == "hull") {
+      actor.shape = hull(body);
     } else {
-      fail(body, "shape", fmt::format("is \"{}\"; allowed: sphere, box, half-space", shape));
+      fail(body, "shape",
+           fmt::format("is \"{}\"; allowed: sphere, box, half-space, capsule, cylinder, cone, hull",
+                       shape));
     }
     const bool as_box = field(body, "bounds") == "obb" && shape != "half-space";
     actor.collides_as = as_box ? Shape(bounding_box(actor.shape)) : actor.shape;

@@ -69,6 +69,18 @@ Colour colour_of(const Actor& actor, std::size_t free_index) {
   return actor.entity == "conveyor" ? Colour{"", 0.45, 0.42, 0.5} : Colour{"", 0.25, 0.45, 0.4};
 }
 
+/// What lies below the planes of all faces; edges of rounded ones are drawn sharp.
+std::string planes(const Hull& hull) {
+  const Polytope& polytope = *hull.core;
+  std::string text = "intersection { ";
+  for (std::size_t f = 0; f < polytope.normals.size(); ++f) {
+    const Vector3& n = polytope.normals[f];
+    const double offset = n.dot(polytope.vertices[polytope.faces[f][0]]) + hull.rounding;
+    text += fmt::format("plane {{ {}, {:.9g} }} ", vec(n), offset);
+  }
+  return text;
+}
+
 /// Geometry alone, in body axes, so that it can be cut with another.
 std::string solid(const Shape& shape) {
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
@@ -76,6 +88,26 @@ std::string solid(const Shape& shape) {
   }
   if (const auto* box = std::get_if<Box>(&shape)) {
     return fmt::format("box {{ {}, {} ", vec(-box->half_extents), vec(box->half_extents));
+  }
+  if (const auto* capsule = std::get_if<Capsule>(&shape)) {
+    const Vector3 end(0.0, 0.5 * capsule->length, 0.0);
+    const double r = capsule->radius;
+    return fmt::format(
+        "merge {{ cylinder {{ {0}, {1}, {2:.9g} }} sphere {{ {0}, {2:.9g} }} sphere {{ {1}, "
+        "{2:.9g} "
+        "}} ",
+        vec(-end), vec(end), r);
+  }
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
+    const Vector3 end(0.0, 0.5 * cylinder->length, 0.0);
+    return fmt::format("cylinder {{ {}, {}, {:.9g} ", vec(-end), vec(end), cylinder->radius);
+  }
+  if (const auto* cone = std::get_if<Cone>(&shape)) {
+    return fmt::format("cone {{ {}, {:.9g}, {}, 0 ", vec({0.0, -0.25 * cone->height, 0.0}),
+                       cone->radius, vec({0.0, 0.75 * cone->height, 0.0}));
+  }
+  if (const auto* hull = std::get_if<Hull>(&shape)) {
+    return planes(*hull);
   }
   return "plane { y, 0 ";
 }

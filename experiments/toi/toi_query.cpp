@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <exception>
 #include <system_error>
 #include <utility>
 
@@ -62,6 +63,8 @@ ToiQueryFormat::BodyColumns ToiQueryFormat::body_columns(const std::string& pref
   BodyColumns columns;
   columns.shape_name = prefix + "shape";
   columns.shape = columns_.find(columns.shape_name);
+  columns.points_name = prefix + "points";
+  columns.points = columns_.find(columns.points_name);
   for (std::size_t i = 0; i < numbers_per_body; ++i) {
     columns.name[i] = prefix + std::string(number_names[i]);
     columns.number[i] = need(columns.name[i]);
@@ -94,12 +97,28 @@ class ToiQueryFormat::Body {
     if (kind == "half-space") {
       return HalfSpace{};
     }
+    if (kind == "capsule") {
+      return Capsule{extent(h), 2.0 * extent(h + 1)};
+    }
+    if (kind == "cylinder") {
+      return Cylinder{extent(h), 2.0 * extent(h + 1)};
+    }
+    if (kind == "cone") {
+      return Cone{extent(h), 2.0 * extent(h + 1)};
+    }
+    if (kind == "hull") {
+      return hull();
+    }
     throw BadField{columns_.shape_name,
-                   fmt::format("'{}' is unknown; allowed: box, sphere, half-space", kind)};
+                   fmt::format("'{}' is unknown; allowed: box, sphere, half-space, capsule, "
+                               "cylinder, cone, hull",
+                               kind)};
   }
 
   [[nodiscard]] Motion motion(double duration) const {
-    const Pose pose{vector(p), orientation()};
+    const bool turned = !axes_.vec().isZero(0.0);
+    const Pose pose{vector(p),
+                    turned ? Quaternion((orientation() * axes_).normalized()) : orientation()};
     const Twist twist{vector(v), vector(w)};
     const Vector3 acceleration = vector(a);
     refuse(columns_.name[v], why_too_far(pose, twist, acceleration, duration));
@@ -126,8 +145,50 @@ class ToiQueryFormat::Body {
     return q_WB;
   }
 
+  /// Of points "x y z; x y z; ...", rounded by hx. They keep their axes: the pose is theirs, but
+  /// for the position, which is that of the centroid.
+  [[nodiscard]] Shape hull() const {
+    if (columns_.points == CsvColumns::absent) {
+      throw BadField{columns_.shape_name,
+                     fmt::format("a hull needs the column {}", columns_.points_name)};
+    }
+    std::vector<Vector3> points;
+    Vector3 point;
+    int coordinate = 0;
+    std::string_view rest = unquoted(fields_[columns_.points]);
+    while (!rest.empty()) {
+      const std::size_t end = rest.find_first_of(" ;");
+      const std::string_view word = rest.substr(0, end);
+      rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+      if (word.empty()) {
+        continue;
+      }
+      point[coordinate++] = read_number(word, columns_.points_name);
+      if (coordinate == 3) {
+        points.push_back(point);
+        coordinate = 0;
+      }
+    }
+    const double rounding = number(h);
+    if (coordinate != 0 || !(rounding >= 0.0)) {
+      throw BadField{coordinate != 0 ? columns_.points_name : columns_.name[h],
+                     coordinate != 0
+                         ? "holds no whole number of points; allowed: three numbers each"
+                         : "is below 0; allowed: the rounding of the hull (m)"};
+    }
+    try {
+      ConvexHull found = convex_hull(points);
+      refuse(columns_.points_name, why_no_extent(found.polytope->width));
+      axes_ = found.axes;
+      return Hull{std::move(found.polytope), rounding};
+    } catch (const std::exception& error) {
+      throw BadField{columns_.points_name, error.what()};
+    }
+  }
+
   const BodyColumns& columns_;
   const std::vector<std::string_view>& fields_;
+  mutable Quaternion axes_ = Quaternion::Identity();  ///< of a hull: from its own to its points'
 };
 
 std::string_view ToiQueryFormat::id(std::string_view row, Scratch& scratch) const {

@@ -39,12 +39,15 @@ class ToiQueryFormat {
  private:
   static constexpr std::size_t numbers_per_body = 19;
 
-  /// Columns of one body: its numbers in the order of `number_names`, and the optional shape.
+  /// Columns of one body: its numbers in the order of `number_names`, the optional shape, and the
+  /// points of a hull.
   struct BodyColumns {
     std::array<std::size_t, numbers_per_body> number{};
     std::array<std::string, numbers_per_body> name;
     std::size_t shape = CsvColumns::absent;
     std::string shape_name;
+    std::size_t points = CsvColumns::absent;
+    std::string points_name;
   };
 
   class Body;

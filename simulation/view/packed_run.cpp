@@ -10,7 +10,10 @@ namespace {
 
 void add_shape(JsonWriter& json, std::string_view key, const Shape& shape) {
   json.open(key);
-  json.text("kind", shape_name(shape));
+  // What the page has no drawing of is drawn as the box around it.
+  const bool drawn =
+      std::holds_alternative<Sphere>(shape) || std::holds_alternative<HalfSpace>(shape);
+  json.text("kind", drawn ? shape_name(shape) : "box");
   if (const auto* half_space = std::get_if<HalfSpace>(&shape)) {
     json.number("x", half_space->normal_B.x());
     json.number("y", half_space->normal_B.y());
