@@ -19,6 +19,24 @@ std::string_view to_string(EventKind kind) {
       return "grasped";
     case EventKind::released:
       return "released";
+    case EventKind::slip_begins:
+      return "slip-begins";
+    case EventKind::stick_begins:
+      return "stick-begins";
+    case EventKind::roll_begins:
+      return "roll-begins";
+  }
+  return "unknown";
+}
+
+std::string_view to_string(Grade grade) {
+  switch (grade) {
+    case Grade::exact:
+      return "exact";
+    case Grade::enclosed:
+      return "enclosed";
+    case Grade::sampled:
+      return "sampled";
   }
   return "unknown";
 }

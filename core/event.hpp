@@ -15,15 +15,27 @@ enum class EventKind {
   contact_ends,    ///< it leaves the surface
   field_entered,
   field_left,
-  grasped,   ///< a fist closes: `a` is the hand, `b` what it holds from now on
-  released,  ///< it opens
+  grasped,       ///< a fist closes: `a` is the hand, `b` what it holds from now on
+  released,      ///< it opens
+  slip_begins,   ///< two in touch begin to slide along each other, or slide otherwise
+  stick_begins,  ///< they stop sliding: friction holds them
+  roll_begins,   ///< a ball stops sliding: it rolls
 };
 [[nodiscard]] std::string_view to_string(EventKind kind);
+
+/// How well the end of a contact mode was located.
+enum class Grade {
+  exact,     ///< a root of a polynomial, to roundoff
+  enclosed,  ///< proven by intervals
+  sampled,   ///< looked for at so many points, then bisected
+};
+[[nodiscard]] std::string_view to_string(Grade grade);
 
 /// Something that happened between two bodies.
 struct Event {
   Instant time;
   EventKind kind = EventKind::impact;
+  Grade grade = Grade::exact;  ///< of a mode that ends
   BodyIndex a = 0;
   BodyIndex b = 0;
   Contact contact{};                ///< of an impact whose law needs it; otherwise zeros

@@ -29,6 +29,7 @@ struct ImpactEnergy {
   double restitution_loss = 0.0;   ///< <= 0
   double driven_work = 0.0;        ///< done by driven bodies
   double conveyor_and_hand = 0.0;  ///< done by belts (and hands)
+  double impact_friction = 0.0;    ///< <= 0: what tangential impulses took
 };
 
 struct LawInfo {
@@ -37,6 +38,8 @@ struct LawInfo {
   std::string_view summary;
   /// Of a single contact without friction it is Newton's hypothesis, which joints can pass on.
   bool passed_on_by_joints = false;
+  bool friction = false;  ///< treats it
+  bool kinematic = true;  ///< v_n+ = -e v_n-: e is Newton's
 };
 
 /// Port: what do two bodies in contact do to each other?

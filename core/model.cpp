@@ -102,9 +102,14 @@ void Model::choose_bodies() {
       tally.add("feels no gravity", b.name, "its G is 0");
     }
     if (const double speed = b.entity->surface_velocity(b, b.initial).norm(); speed > 0.0) {
-      tally.add(fmt::format("has a belt that runs at {} m/s and carries nothing", speed), b.name,
-                "it takes friction to carry: under \"newton\", which has none, it is a wall; under "
-                "\"thesis\" it exchanges momentum with what hits it");
+      const bool rough = b.friction > 0.0;
+      tally.add(fmt::format("has a belt that runs at {} m/s and carries {}", speed,
+                            rough ? "by friction" : "nothing"),
+                b.name,
+                rough
+                    ? "the scene says so; its work is told in the ledger"
+                    : "it takes friction to carry: under \"newton\", which has none, it is a wall; "
+                      "under \"thesis\" it exchanges momentum with what hits it");
     }
     if (b.bounds == Bounds::obb && is_sphere(b.shape)) {
       tally.add("collides as a box", b.name, "the scene says bounds = \"obb\", as the thesis does");

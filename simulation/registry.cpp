@@ -17,6 +17,7 @@
 #include "ccd/swept_box.hpp"
 #include "core/error.hpp"
 #include "core/laws/newton_law.hpp"
+#include "core/laws/routh_law.hpp"
 #include "core/laws/simultaneous_laws.hpp"
 #include "core/laws/thesis_law.hpp"
 #include "core/model.hpp"
@@ -114,7 +115,7 @@ std::span<const std::shared_ptr<const ContactDetector>> detectors() {
 
 std::span<const std::shared_ptr<const ImpactLaw>> impact_laws() {
   static const Entries<ImpactLaw> entries{make_thesis_law(), make_newton_law(), make_moreau_law(),
-                                          make_reflections_law()};
+                                          make_reflections_law(), make_routh_law()};
   return entries;
 }
 

@@ -29,6 +29,9 @@ void RunGuard::begin(const Model& model) {
     free_top_[i] =
         watch_spin_ && model.is_free(i) && model.rotates(i) && !model.jointed(i) ? 1 : 0;
   }
+  if (model.has_friction()) {
+    free_top_.assign(model.size(), 0);  // what rolls takes spin from its way
+  }
   for (const SceneForce& force : model.scene().forces) {
     for (const BodyIndex i : force.bodies) {
       free_top_[i] = force.force->involves_rotation() ? 0 : free_top_[i];

@@ -143,6 +143,12 @@ std::string refusal(const Model& model, const Plan& plan) {
         "them (see `kairos list`)",
         scheme.name);
   }
+  if (const LawInfo law = plan.method.law->info(); model.has_friction() && !law.friction) {
+    return fmt::format(
+        "the scene has friction, of which impact law '{}' knows nothing; allowed: newton, routh; "
+        "or friction = 0 for all bodies of the scene",
+        law.name);
+  }
   if (const std::string pair = pair_across_islands(model); detector.at_step_ends && !pair.empty()) {
     return fmt::format("detector '{}': {}", detector.name, pair);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/contact_manifold.hpp"
+#include "core/contacts/flat_modes.hpp"
 #include "core/instant.hpp"
 #include "core/state.hpp"
 
@@ -21,6 +22,7 @@ struct Patch {
   ContactManifold manifold;           ///< when it was last looked at
   Instant begins = Instant::never();  ///< when its bounces have died down
   bool told = false;                  ///< that contact has begun
+  Slip slip = Slip::none;             ///< what both do along each other
 
   void persist(Archive& archive);
 };

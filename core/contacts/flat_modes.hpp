@@ -16,7 +16,19 @@ struct GroupPatch {
   ContactManifold manifold;
   double rest_speed =
       0.0;  ///< m/s; slower than this along the normal, they are at rest to each other
+  double friction = 0.0;            ///< Coulomb's; may be infinite
+  Vector3 drift = Vector3::Zero();  ///< of the surface of b along that of a, beside their motion
+                                    ///< (belts), m/s
 };
+
+/// What two surfaces in touch do along each other.
+enum class Slip : char {
+  none,    ///< they are not held together, or nothing rubs
+  sticks,  ///< friction holds them; a ball rolls
+  begins,  ///< they begin to slide
+  slides,
+};
+constexpr Slip last_of(Slip) { return Slip::slides; }
 
 /// Bodies in touch at one instant, with what would move them if they were not.
 struct ContactGroup {
@@ -24,7 +36,9 @@ struct ContactGroup {
   std::vector<Twist> velocities;
   std::vector<Twist> loads;    ///< accelerations without contact forces
   std::vector<double> radius;  ///< how far a body reaches from its origin, m
+  std::vector<char> round;     ///< a sphere: it may turn while it touches
   std::vector<GroupPatch> patches;
+  double instant = 0.0;  ///< s; what happens within it happens at once
 };
 
 /// How a group goes on whose contact forces and loads stay what they are: bodies move on parabolas
@@ -33,9 +47,13 @@ struct FlatMode {
   std::string refusal;            ///< why it does not go on like that; empty: it does
   std::vector<Twist> velocities;  ///< with nothing left along the normals that are kept
   std::vector<Twist> accelerations;
-  std::vector<char> kept;        ///< by patch: stays in touch
-  std::vector<double> pressing;  ///< by patch: normal force, N
-  std::vector<double> rate;      ///< by patch: fastest point along the normal before, m/s, >= 0
+  std::vector<char> kept;         ///< by patch: stays in touch
+  std::vector<double> pressing;   ///< by patch: normal force, N
+  std::vector<double> rate;       ///< by patch: fastest point along the normal before, m/s, >= 0
+  std::vector<Slip> slip;         ///< by patch, where there is friction; otherwise empty
+  std::vector<Vector3> force;     ///< by patch, where there is friction: on b, N
+  std::vector<double> slip_ends;  ///< by patch, where there is friction: when it stops sliding, s
+  bool curved = false;            ///< refused for what slides on no line, and for nothing else
   int solves = 0;
 };
 

@@ -13,8 +13,9 @@ namespace {
 /// and a speed of 1. For balls lighter than the belt the exchange formula has already turned the
 /// normal velocity outwards and the reflection turns it back in.
 ///
-/// `newton`: smooth bodies, so nothing acts along the surface: the belt runs on underneath, carries
-/// nothing, has no mass, and what hits it meets a wall.
+/// `newton`: without friction nothing acts along the surface: the belt runs on underneath, carries
+/// nothing, has no mass, and what hits it meets a wall. With friction it carries, at its speed
+/// whatever it takes.
 ///
 /// A half-space has a normal in place of an orientation: its belt runs along what +x becomes when
 /// +y is turned to the normal.

@@ -2,6 +2,7 @@
 
 #include "core/contacts/group_impacts.hpp"
 #include "core/contacts/group_law.hpp"
+#include "core/laws/routh_law.hpp"
 
 #include <limits>
 #include <utility>
@@ -143,11 +144,19 @@ class NewtonLaw final : public ImpactLaw, public GroupLaw {
   }
 
   [[nodiscard]] LawInfo info() const override {
-    return {"newton", true, "restitution at the contact point, with rotation, without friction",
-            true};
+    return {.name = "newton",
+            .needs_contact = true,
+            .summary =
+                "restitution at the contact point, with rotation; with friction what "
+                "'routh' does",
+            .passed_on_by_joints = true,
+            .friction = true};
   }
 
   ImpactEnergy apply(const Contact& contact, ImpactBody a, ImpactBody b) const override {
+    if (contact.friction > 0.0) {
+      return apply_routh(contact, a, b);  // with friction Newton's e could create energy
+    }
     ImpactEnergy energy;
     Side<double> of_a(a, a.state, contact);
     Side<double> of_b(b, b.state, contact);
@@ -165,6 +174,9 @@ class NewtonLaw final : public ImpactLaw, public GroupLaw {
 
   double roundoff(const Contact& contact, const ImpactBody& a, const ImpactBody& b,
                   const BodyState& before_a, const BodyState& before_b) const override {
+    if (contact.friction > 0.0) {
+      return 0.0;
+    }
     Side<long double> of_a(a, before_a, contact);
     Side<long double> of_b(b, before_b, contact);
     // Of the exact law, which knows unit vectors.

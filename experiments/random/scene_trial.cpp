@@ -58,6 +58,9 @@ class Watch : public Recorder {
 
  private:
   void check_impact(const Event& event) {
+    if (event.contact.friction > 0.0) {
+      return;  // restitution is then one of work, not of velocities
+    }
     const double e = model_->restitution(event.a, event.b);
     if (const std::string broken = broken_restitution(event, e); !broken.empty()) {
       throw BrokenPromise{Fate::law,

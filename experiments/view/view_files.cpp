@@ -30,7 +30,8 @@ EventKind kind_of(const TableRows& rows, std::size_t row) {
   const std::string text = rows.text(row, "kind");
   for (const EventKind kind :
        {EventKind::impact, EventKind::contact_begins, EventKind::contact_ends,
-        EventKind::field_entered, EventKind::field_left, EventKind::grasped, EventKind::released}) {
+        EventKind::field_entered, EventKind::field_left, EventKind::grasped, EventKind::released,
+        EventKind::slip_begins, EventKind::stick_begins, EventKind::roll_begins}) {
     if (text == to_string(kind)) {
       return kind;
     }

@@ -22,7 +22,7 @@ using tests::TemporaryFolder;
 // What only this test archives.
 namespace kairos {
 inline namespace core {
-constexpr EventKind last_of(EventKind) { return EventKind::released; }
+constexpr EventKind last_of(EventKind) { return EventKind::roll_begins; }
 constexpr RunStatus last_of(RunStatus) { return RunStatus::stopped; }
 }  // namespace core
 }  // namespace kairos

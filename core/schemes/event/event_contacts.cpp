@@ -40,8 +40,13 @@ bool EventContacts::settle(std::span<const BodyIndex> seeds, Instant t,
 
 /// Why what stays in touch is not kept, for a person.
 std::string EventContacts::unkept() const {
-  return modes_.why_not().empty() ? std::string(part_them)
-                                  : fmt::format("{}; {}", modes_.why_not(), part_them);
+  std::string text = modes_.why_not().empty() ? std::string(part_them)
+                                              : fmt::format("{}; {}", modes_.why_not(), part_them);
+  if (run_.model.has_friction()) {
+    text +=
+        "; schemes that treat friction between bodies that turn: moreau-jean, pgs, xpbd, penalty";
+  }
+  return text;
 }
 
 /// Nothing is held any longer: each flies on from `now`.
@@ -114,7 +119,8 @@ void EventContacts::stay(BodyIndex a, BodyIndex b, Instant t) {
 bool EventContacts::could_be_supported(BodyIndex a, BodyIndex b, Instant t) const {
   for (const auto& [ball, surface] : {std::pair{a, b}, std::pair{b, a}}) {
     if (run_.model.is_free(ball) && !run_.model.is_free(surface) &&
-        std::holds_alternative<Sphere>(run_.model.shape(ball)) && motions_.of(surface).start <= t) {
+        std::holds_alternative<Sphere>(run_.model.shape(ball)) && motions_.of(surface).start <= t &&
+        run_.model.friction(ball, surface) == 0.0) {
       return true;
     }
   }
@@ -189,6 +195,9 @@ bool EventContacts::lands(BodyIndex a, BodyIndex b, const Contact& contact, Inst
     const BodyIndex surface = ball == a ? b : a;
     if (!run_.model.is_free(ball) || run_.model.is_free(surface)) {
       continue;
+    }
+    if (run_.model.friction(ball, surface) > 0.0) {
+      continue;  // a mode of its own
     }
     const Motion& under = motions_.of(surface);
     const double s = std::min(t - under.start, under.duration);
@@ -371,6 +380,11 @@ void EventContacts::leave_support(BodyIndex i, Instant t) {
 }
 
 void EventContacts::carry_riders(BodyIndex surface, Instant t) {
+  for (const BodyIndex i : modes_.held_by(surface)) {
+    if (joints_of(i) == nullptr) {
+      settle_anew(i, t);
+    }
+  }
   for (const BodyIndex i : run_.agenda.by_name()) {
     if (motions_.is_supported_by(i, surface)) {
       motions_.book(i, t);

@@ -54,6 +54,7 @@ class EventContacts {
   void strike_jointed(Event& event);
   [[nodiscard]] bool rest_on_joints(const Event& event, Instant t);
   void part_jointed(BodyIndex i, Instant t);
+  [[nodiscard]] bool strikes_flat(Event& event);
   [[nodiscard]] bool still_approaching(const Event& event, double approach, Instant t);
   [[nodiscard]] bool settle(std::span<const BodyIndex> seeds, Instant t,
                             const EventModes::Wish& wish = {});

@@ -39,6 +39,7 @@ class EventDriven final : public Scheme {
   [[nodiscard]] SchemeInfo info() const override {
     SchemeInfo info{"event-driven", "from impact to impact, whatever the frames", "Lubachevsky1991",
                     true};
+    info.friction = true;
     info.joints = true;
     return info;
   }

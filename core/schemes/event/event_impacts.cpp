@@ -1,4 +1,5 @@
 // What `EventContacts` does when bodies strike each other: two, or a group that hangs together.
+#include "core/contacts/centre_of_pressure.hpp"
 #include "core/contacts/group_law.hpp"
 #include "core/impact_check.hpp"
 #include "core/schemes/event/event_contacts.hpp"
@@ -19,6 +20,15 @@ namespace {
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// An impact among bodies in touch is handed on so often at most, for each of them.
 constexpr std::size_t most_rounds = 1000;
+
+Vector3 nearest_point(const ContactManifold& manifold, const Vector3& x) {
+  const auto last = manifold.points.begin() + static_cast<std::ptrdiff_t>(manifold.size);
+  return std::min_element(manifold.points.begin(), last,
+                          [&](const auto& p, const auto& q) {
+                            return (p.position - x).squaredNorm() < (q.position - x).squaredNorm();
+                          })
+      ->position;
+}
 
 }  // namespace
 
@@ -99,12 +109,63 @@ void EventContacts::strike(Event& event) {
   Vector3 unused_a = Vector3::Zero();  // solids that push (none does) would need fields
   Vector3 unused_b = Vector3::Zero();
   const ImpactEnergy energy =
-      run_.exchange(event, motions_.now(event.a), motions_.now(event.b), unused_a, unused_b);
-  assert(!run_.law.info().needs_contact ||
+      run_.exchange(event, motions_.now(event.a), motions_.now(event.b), unused_a, unused_b,
+                    run_.model.friction(event.a, event.b) > 0.0 && strikes_flat(event));
+  run_.ledger.add(EnergyLine::impact_friction, energy.impact_friction);
+  assert(!run_.law.info().kinematic || event.contact.friction > 0.0 ||
+         !run_.law.info().needs_contact ||
          broken_restitution(event, event.contact.restitution).empty());
   run_.ledger.add(EnergyLine::restitution_loss, energy.restitution_loss);
   run_.ledger.add(EnergyLine::driven_work, energy.driven_work);
   run_.ledger.add(EnergyLine::conveyor_and_hand, energy.conveyor_and_hand);
+}
+
+/// Whether faces or edges that land flat, with friction, are sent back flat: their points press so
+/// that nothing turns, which they can while the centre of pressure is among them. Where it would
+/// be beyond, the point next to it takes the impact alone.
+bool EventContacts::strikes_flat(Event& event) {
+  const auto [a, b] = std::pair{event.a, event.b};
+  const BodyState& at_a = motions_.now(a);
+  const BodyState& at_b = motions_.now(b);
+  const Vector3 n = event.contact.normal;
+  const ContactManifold manifold =
+      run_.detector.manifold(run_.model.shape(a), at_a.pose, run_.model.shape(b), at_b.pose,
+                             predictor_.touching_gap(a, b));
+  const double approach = normal_velocity(event.contact, at_a, at_b);
+  if (manifold.size < 2 || approach >= 0.0) {
+    return false;
+  }
+  for (std::size_t k = 0; k < manifold.size; ++k) {
+    const double rate = normal_velocity({manifold.points[k].position, n, 0.0}, at_a, at_b);
+    if (std::abs(rate - approach) > 1e-9 * std::abs(approach)) {
+      return false;
+    }
+  }
+  BodyState after_a = at_a;
+  BodyState after_b = at_b;
+  Vector3 unused = Vector3::Zero();
+  const BodyInertia inertia_a = run_.flat_inertia(a);
+  const BodyInertia inertia_b = run_.flat_inertia(b);
+  event.contact.restitution = run_.model.restitution(a, b);
+  event.contact.friction = run_.model.friction(a, b);
+  run_.law.apply(event.contact, {run_.model.body(a), inertia_a, after_a, unused},
+                 {run_.model.body(b), inertia_b, after_b, unused});
+  for (const auto& [i, before, after] : {std::tuple{a, &at_a, &after_a}, {b, &at_b, &after_b}}) {
+    if (!run_.model.is_free(i) || !run_.model.inertia(i).rotates) {
+      continue;
+    }
+    const Vector3 p = after->twist.linear - before->twist.linear;
+    if (p.dot(n) == 0.0) {
+      return false;
+    }
+    const Vector3& x = before->pose.position;
+    const Vector3 pressed = x + p * ((event.contact.point - x).dot(n) / p.dot(n));
+    if (!carries_at(manifold, pressed)) {
+      event.contact.point = nearest_point(manifold, pressed);
+      return false;
+    }
+  }
+  return true;
 }
 
 /// After a law that does not part them nothing can go on.
@@ -157,6 +218,11 @@ bool EventContacts::strike_group(const BodyPair& pair, double approach, Instant 
     return false;
   }
   EventModes::GroupImpact impact = modes_.impact_group(pair, t, law->takes_what_touches());
+  if (std::any_of(impact.pairs.begin(), impact.pairs.end(), [&](const BodyPair& p) {
+        return run_.model.friction(p.first, p.second) > 0.0;
+      })) {
+    return false;  // one after the other
+  }
   if (!impact.refusal.empty() || impact.pairs.size() < (held ? 1U : 2U)) {
     return false;
   }

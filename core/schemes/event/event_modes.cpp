@@ -1,5 +1,6 @@
 #include "core/schemes/event/event_modes.hpp"
 
+#include "core/schemes/event/gathered_group.hpp"
 #include "core/schemes/event/mode_guards.hpp"
 
 #include <algorithm>
@@ -22,28 +23,6 @@ double finite_radius(const Shape& shape) {
 }
 
 }  // namespace
-
-/// All that touches, at an instant, as bodies of the model and as a group.
-struct EventModes::Gathered {
-  std::vector<BodyIndex> bodies;  ///< by place in the group
-  std::vector<BodyState> states;
-  std::vector<std::pair<BodyIndex, BodyIndex>> pairs;  ///< by patch
-  ContactGroup group;
-  std::string refusal;
-
-  [[nodiscard]] std::size_t place(BodyIndex i) const {
-    return static_cast<std::size_t>(std::find(bodies.begin(), bodies.end(), i) - bodies.begin());
-  }
-  [[nodiscard]] bool has(BodyIndex i) const { return place(i) < bodies.size(); }
-  [[nodiscard]] bool presses(const BodyPair& pair, const FlatMode& mode) const {
-    for (std::size_t p = 0; p < pairs.size(); ++p) {
-      if (pairs[p] == pair || pairs[p] == BodyPair{pair.second, pair.first}) {
-        return mode.kept[p] != 0 && mode.pressing[p] > 0.0;
-      }
-    }
-    return false;
-  }
-};
 
 EventModes::EventModes(EventRun& run, EventMotions& motions, EventPredictor& predictor,
                        const EventAccumulation& accumulation, ContactGraph& graph)
@@ -84,6 +63,7 @@ double EventModes::rest_speed(BodyIndex a, BodyIndex b, const BodyState& at_a,
 EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instant t,
                                         const Wish& wish) {
   Gathered found;
+  found.group.instant = at_once * run_.epoch;
   const auto is_seed = [&](BodyIndex i) {
     return std::find(seeds.begin(), seeds.end(), i) != seeds.end();
   };
@@ -99,6 +79,7 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
     found.group.velocities.push_back(state.twist);
     found.group.loads.push_back(load(i, state));
     found.group.radius.push_back(finite_radius(run_.model.shape(i)));
+    found.group.round.push_back(std::holds_alternative<Sphere>(run_.model.shape(i)) ? 1 : 0);
     if (run_.model.is_free(i)) {
       const Island& island = run_.model.islands()[run_.model.island_of(i)];
       if (island.joints != nullptr) {
@@ -107,7 +88,7 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
         found.refusal = "'" + run_.model.body(i).name + "' feels forces that are not constant";
       }
     } else if (run_.model.mobility(i) == Mobility::driven && !wish.impact) {
-      found.refusal = "'" + run_.model.body(i).name + "' is driven";
+      found.driven = i;
     }
   };
   std::vector<BodyIndex> sorted(seeds.begin(), seeds.end());
@@ -170,7 +151,10 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
         add(j);
       }
       found.pairs.emplace_back(a, b);
-      found.group.patches.push_back({found.place(a), found.place(b), manifold, slow});
+      const Vector3& n = manifold.normal;
+      const double mu = run_.model.friction(a, b);
+      const Vector3 drift = mu > 0.0 ? Vector3(belt(b, n) - belt(a, n)) : Vector3(Vector3::Zero());
+      found.group.patches.push_back({found.place(a), found.place(b), manifold, slow, mu, drift});
     }
   }
   return found;
@@ -196,6 +180,18 @@ std::vector<BodyIndex> EventModes::group(std::span<const BodyIndex> seeds) const
   return bodies;
 }
 
+std::vector<BodyIndex> EventModes::held_by(BodyIndex surface) const {
+  std::vector<BodyIndex> bodies;
+  for (const BodyIndex i : graph_.partners(surface)) {
+    if (run_.model.is_free(i)) {
+      bodies.push_back(i);
+    }
+  }
+  std::sort(bodies.begin(), bodies.end(),
+            [&](BodyIndex i, BodyIndex j) { return run_.agenda.before(i, j); });
+  return bodies;
+}
+
 void EventModes::bring_group(std::span<const BodyIndex> bodies, Instant t) {
   for (const BodyIndex i : bodies) {
     motions_.book(i, t);
@@ -209,12 +205,18 @@ bool EventModes::settle(std::span<const BodyIndex> seeds, Instant t, const Adopt
                         const Wish& wish) {
   Gathered found = gather(seeds, t, wish);
   why_not_ = found.refusal;
+  if (why_not_.empty() && found.driven) {
+    return settle_driven(found, t, adopt);
+  }
   if (why_not_.empty() && found.pairs.size() < wish.pairs) {
     why_not_ = "some are still on their way";
   }
   while (why_not_.empty()) {
-    const FlatMode mode = flat_mode(found.group, {wish.unloaded, wish.unite});
+    const FlatMode mode = contact_mode(found.group, {wish.unloaded, wish.unite});
     why_not_ = mode.refusal;
+    if (mode.curved) {
+      return settle_curved(found, t, adopt);
+    }
     if (why_not_.empty() && wish.pressed && !found.presses(*wish.pressed, mode)) {
       why_not_ = "nothing presses";
     }
@@ -246,13 +248,19 @@ bool EventModes::settle(std::span<const BodyIndex> seeds, Instant t, const Adopt
         run_.agenda.push(t + until[p], Due::mode_ends, found.pairs[p].first, found.pairs[p].second);
       }
     }
+    for (std::size_t p = 0; p < mode.slip_ends.size(); ++p) {
+      if (mode.kept[p] != 0 && t + mode.slip_ends[p] < run_.epoch_end) {
+        run_.agenda.push(t + mode.slip_ends[p], Due::mode_ends, found.pairs[p].first,
+                         found.pairs[p].second);
+      }
+    }
     return true;
   }
   return false;
 }
 
-void EventModes::commit(const Gathered& found, const FlatMode& mode, Instant t,
-                        const Adopt& adopt) {
+void EventModes::commit(const Gathered& found, const FlatMode& mode, Instant t, const Adopt& adopt,
+                        const Alone* alone) {
   std::vector<std::pair<BodyIndex, Instant>> adopted;
   std::vector<std::pair<BodyIndex, BodyIndex>> supports;
   double dissipated = 0.0;
@@ -280,23 +288,80 @@ void EventModes::commit(const Gathered& found, const FlatMode& mode, Instant t,
     run_.account.struck(i, before, now);
   }
   if (dissipated != 0.0) {
-    run_.ledger.add(EnergyLine::zeno_completion, dissipated);
+    const bool hopped = mode.slip.empty() || std::any_of(mode.rate.begin(), mode.rate.end(),
+                                                         [](double rate) { return rate > 0.0; });
+    run_.ledger.add(hopped ? EnergyLine::zeno_completion : EnergyLine::projection, dissipated);
   }
-  const std::vector<Change> changes = join_and_part(found, mode, t);
+  std::vector<Change> changes = join_and_part(found, mode, t);
   for (std::size_t k = 0; k < found.bodies.size(); ++k) {
     const BodyIndex i = found.bodies[k];
     if (run_.model.is_free(i)) {
       if (graph_.holds(i)) {
-        motions_.hold(i, t, mode.accelerations[k].linear);
+        Twist acceleration = mode.accelerations[k];
+        if (mode.slip.empty() || found.group.round[k] == 0) {
+          acceleration.angular.setZero();
+        }
+        alone != nullptr ? motions_.hold(i, t, alone->motion) : motions_.hold(i, t, acceleration);
       } else {
         motions_.launch(i, t);
       }
     }
   }
+  rub(found, mode, t, changes, alone);
   tell(changes, t);
   for (const BodyIndex i : found.bodies) {
     if (run_.model.is_free(i)) {
       predictor_.predict(i, t);
+    }
+  }
+}
+
+/// Of the surface of i along itself, beside what i does, m/s.
+Vector3 EventModes::belt(BodyIndex i, const Vector3& normal) const {
+  const Vector3 v = run_.model.entity(i).surface_velocity(run_.model.body(i), motions_.now(i));
+  return v - normal * normal.dot(v);
+}
+
+/// Who rubs on whom from now on, and what of it is new.
+void EventModes::rub(const Gathered& found, const FlatMode& mode, Instant t,
+                     std::vector<Change>& changes, const Alone* alone) {
+  for (std::size_t p = 0; p < mode.slip.size(); ++p) {
+    if (mode.kept[p] == 0) {
+      continue;
+    }
+    const auto [a, b] = found.pairs[p];
+    const GroupPatch& patch = found.group.patches[p];
+    const Vector3& n = patch.manifold.normal;
+    const auto arm = [&](std::size_t k, double sign) {
+      const double r = found.group.round[k] != 0 ? found.group.radius[k] : 0.0;
+      return Vector3(sign * r * n);
+    };
+    const auto moves_by_itself = [&](BodyIndex i) { return !run_.model.is_free(i); };
+    const Slip before = graph_.find(a, b)->slip;
+    const Slip now = mode.slip[p] == Slip::begins ? Slip::slides : mode.slip[p];
+    graph_.find(a, b)->slip = now;
+    if (mode.slip[p] == Slip::begins || (now == Slip::slides && before != Slip::slides)) {
+      changes.push_back({EventKind::slip_begins, a, b});
+    } else if (now == Slip::sticks && before == Slip::slides) {
+      const bool rolls = (found.group.round[patch.a] != 0 && run_.model.rotates(a)) ||
+                         (found.group.round[patch.b] != 0 && run_.model.rotates(b));
+      changes.push_back({rolls ? EventKind::roll_begins : EventKind::stick_begins, a, b});
+    }
+    if (now == Slip::slides || moves_by_itself(a) || moves_by_itself(b)) {
+      const Vector3& force = mode.force[p];
+      motions_.rub(run_.model.is_free(b) ? b : a, t,
+                   {.a = a,
+                    .b = b,
+                    .slides = now == Slip::slides,
+                    .rides = now == Slip::sticks && found.driven.has_value(),
+                    .curved = alone != nullptr && alone->curved,
+                    .force = force,
+                    .along = force - n * n.dot(force),
+                    .arm_a = arm(patch.a, 1.0),
+                    .arm_b = arm(patch.b, -1.0),
+                    .belt_a = belt(a, n),
+                    .belt_b = belt(b, n),
+                    .spent = alone != nullptr ? alone->spent : Polynomial<3>()});
     }
   }
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/contacts/contact_graph.hpp"
-#include "core/contacts/flat_modes.hpp"
+#include "core/contacts/friction_modes.hpp"
 #include "core/schemes/event/event_accumulation.hpp"
 #include "core/schemes/event/event_motions.hpp"
 #include "core/schemes/event/event_predictor.hpp"
@@ -46,6 +46,8 @@ class EventModes {
 
   /// Whether contact forces hold this free body.
   [[nodiscard]] bool holds(BodyIndex i) const { return run_.model.is_free(i) && graph_.holds(i); }
+  /// Free bodies that lie on a surface, by name.
+  [[nodiscard]] std::vector<BodyIndex> held_by(BodyIndex surface) const;
   /// Free bodies that are held together with one of these, they included, by name.
   [[nodiscard]] std::vector<BodyIndex> group(std::span<const BodyIndex> seeds) const;
   /// Books and brings the groups of both: before something changes them.
@@ -99,9 +101,21 @@ class EventModes {
                                   const BodyState& at_b, const Wish& wish) const;
   [[nodiscard]] std::optional<Approach> approach(BodyIndex a, BodyIndex b) const;
   [[nodiscard]] Twist load(BodyIndex i, const BodyState& state) const;
-  void commit(const Gathered& group, const FlatMode& mode, Instant t, const Adopt& adopt);
+  /// One body on one surface, along a motion that is no parabola.
+  struct Alone {
+    Motion motion;
+    bool curved = false;
+    Polynomial<3> spent{};  ///< curved: what friction has taken by a time, as the x, J
+  };
+  void commit(const Gathered& group, const FlatMode& mode, Instant t, const Adopt& adopt,
+              const Alone* alone = nullptr);
+  [[nodiscard]] bool settle_curved(const Gathered& found, Instant t, const Adopt& adopt);
+  [[nodiscard]] bool settle_driven(const Gathered& found, Instant t, const Adopt& adopt);
   [[nodiscard]] std::vector<Change> join_and_part(const Gathered& found, const FlatMode& mode,
                                                   Instant t);
+  void rub(const Gathered& found, const FlatMode& mode, Instant t, std::vector<Change>& changes,
+           const Alone* alone);
+  [[nodiscard]] Vector3 belt(BodyIndex i, const Vector3& normal) const;
 
   EventRun& run_;
   EventMotions& motions_;

@@ -72,6 +72,9 @@ void EventMotions::bring_others(BodyIndex i, Instant t) {
 void EventMotions::launch(BodyIndex i, Instant t) {
   Flow& flow = flow_of(i);
   flow.held = false;
+  for (const BodyIndex k : flow.island.bodies) {
+    bodies_[k].rubs.clear();
+  }
   set_forces(flow);
   if (flow.island.joints != nullptr) {
     put_onto_joints(i, t);
@@ -110,20 +113,39 @@ void EventMotions::rest(BodyIndex i, Instant t) {
   flow.projection = {};
 }
 
-void EventMotions::hold(BodyIndex i, Instant t, const Vector3& acceleration) {
+void EventMotions::hold(BodyIndex i, Instant t, const Motion& motion) {
+  hold(i, t, Twist{motion.acceleration(0.0), Vector3::Zero()});
+  set_motion(i, motion);
+}
+
+void EventMotions::hold(BodyIndex i, Instant t, const Twist& acceleration) {
   Flow& flow = flow_of(i);
   flow.held = true;
   bodies_[i].support.reset();
+  bodies_[i].rubs.clear();
   set_forces(flow);
-  flow.island.constant_force[0] = run_.model.inertia(i).mass * acceleration;
+  flow.island.constant_force[0] = run_.model.inertia(i).mass * acceleration.linear;
   flow.states[0] = booked_[i] = now_[i];
   flow.booked = t;
   if (run_.options.roundoff) {
     flow.launched = flow.states;
     flow.roundoff = 0.0;
   }
-  set_motion(i, Motion::ballistic(t, std::numeric_limits<double>::infinity(), now_[i].pose,
-                                  now_[i].twist, acceleration));
+  Motion motion = Motion::ballistic(t, std::numeric_limits<double>::infinity(), now_[i].pose,
+                                    now_[i].twist, acceleration.linear);
+  if (!acceleration.angular.isZero(0.0)) {
+    // Of a sphere, which looks the same all around: its spin is followed, its orientation is not.
+    motion.rotation = RotationKind::constant_rate;
+    motion.angular_velocity = Polynomial<3>(now_[i].twist.angular, acceleration.angular);
+  }
+  set_motion(i, motion);
+}
+
+void EventMotions::rub(BodyIndex i, Instant t, Rub rub) {
+  rub.from_a = at(rub.a, t);
+  rub.from_b = at(rub.b, t);
+  rub.booked = rub.begun = t;
+  bodies_[i].rubs.push_back(rub);
 }
 
 void EventMotions::go_on(BodyIndex i, Instant t) {
@@ -324,6 +346,7 @@ void EventMotions::book(Flow& flow, Instant t) {
     flow.booked = t;
     return;
   }
+  book_rubs(first, t);
   // At its end a segment is where the stepper left it, which its motion tells up to roundoff.
   const bool whole = !(of(first).end() - t > 0.0) && !bodies_[first].support;
   for (std::size_t k = 0; k < flow.states.size(); ++k) {
@@ -351,6 +374,48 @@ void EventMotions::book(Flow& flow, Instant t) {
     booked_[i] = now_[i];
   }
   flow.booked = t;
+}
+
+/// Friction takes what slides, belts and driven surfaces give what they carry. Forces are constant,
+/// and so are angular accelerations.
+void EventMotions::book_rubs(BodyIndex i, Instant t) {
+  for (Rub& rub : bodies_[i].rubs) {
+    const double h = t - rub.booked;
+    const BodyState to_a = at(rub.a, t);
+    const BodyState to_b = at(rub.b, t);
+    const auto way = [h](const BodyState& from, const BodyState& to, const Vector3& arm) {
+      const Vector3 turned = 0.5 * h * (from.twist.angular + to.twist.angular);
+      return Vector3((to.pose.position - from.pose.position) + turned.cross(arm));
+    };
+    const Vector3 way_a = way(rub.from_a, to_a, rub.arm_a);
+    const Vector3 way_b = way(rub.from_b, to_b, rub.arm_b);
+    const Vector3 belts = h * (rub.belt_b - rub.belt_a);
+    if (rub.curved) {
+      run_.ledger.add(EnergyLine::friction,
+                      rub.spent(t - rub.begun).x() - rub.spent(rub.booked - rub.begun).x());
+    } else if (rub.slides) {
+      run_.ledger.add(EnergyLine::friction, rub.along.dot((way_b - way_a) + belts));
+    }
+    if (!belts.isZero(0.0)) {
+      run_.ledger.add(EnergyLine::conveyor_and_hand, -rub.along.dot(belts));
+    }
+    if (rub.rides) {
+      // m (v1^2 - v0^2) / 2 - F.x, F what acts beside the plane.
+      const BodyState& from = run_.model.is_free(rub.b) ? rub.from_b : rub.from_a;
+      const BodyState& to = run_.model.is_free(rub.b) ? to_b : to_a;
+      run_.ledger.add(EnergyLine::driven_work, run_.account.gained(i, from, to) -
+                                                   (run_.model.gravity_force(i) + field_forces_[i])
+                                                       .dot(to.pose.position - from.pose.position));
+    } else if (run_.model.mobility(rub.a) == Mobility::driven) {
+      run_.ledger.add(EnergyLine::driven_work, rub.force.dot(way_a));
+    }
+    if (!rub.rides && run_.model.mobility(rub.b) == Mobility::driven) {
+      run_.ledger.add(EnergyLine::driven_work, -rub.force.dot(way_b));
+    }
+    rub.from_a = to_a;
+    rub.from_b = to_b;
+    rub.booked = t;
+  }
 }
 
 /// Of a driven surface since the ledger last looked, J: the normal force m a_s.n - F.n, integrated
@@ -402,7 +467,12 @@ std::int64_t EventMotions::evaluations() const {
   return sum;
 }
 
-void EventMotions::MovingBody::persist(Archive& archive) { archive(motion, support, fields); }
+void EventMotions::Rub::persist(Archive& archive) {
+  archive(a, b, slides, rides, curved, spent, begun, force, along, arm_a, arm_b, belt_a, belt_b,
+          from_a, from_b, booked);
+}
+
+void EventMotions::MovingBody::persist(Archive& archive) { archive(motion, support, fields, rubs); }
 
 void EventMotions::Flow::persist(Archive& archive) {
   archive(island.constant_force, exact, carried, held, states, launched, roundoff, booked,
@@ -421,6 +491,9 @@ void EventMotions::persist(Archive& archive) {
     archive.require(!body.support || body.support->surface < bodies_.size());
     for (const BodyIndex field : body.fields) {
       archive.require(field < bodies_.size());
+    }
+    for (const Rub& rub : body.rubs) {
+      archive.require(rub.a < bodies_.size() && rub.b < bodies_.size());
     }
   }
   for (Flow& flow : flows_) {

@@ -41,8 +41,12 @@ class EventMotions {
   /// The state of the island of i has jumped to `now`: new motions from there.
   void launch(BodyIndex i, Instant t);
   /// The same for a body that contact forces hold, alone in its island: it moves in closed form
-  /// from `now`, at this acceleration (m/s^2), turning as it does, until it is launched again.
-  void hold(BodyIndex i, Instant t, const Vector3& acceleration);
+  /// from `now`, at this acceleration (m/s^2; rad/s^2 for spheres, 0 for all others), until it is
+  /// launched again.
+  void hold(BodyIndex i, Instant t, const Twist& acceleration);
+  /// The same along a motion that is known.
+  void hold(BodyIndex i, Instant t, const Motion& motion);
+
   /// The island of i, which joints and a contact hold, is at rest from `now` on, until it is
   /// launched again.
   void rest(BodyIndex i, Instant t);
@@ -50,6 +54,30 @@ class EventMotions {
   /// onto their constraints. Positions are so at the end of the next segment: here they might push
   /// bodies that touch into each other.
   void put_onto_joints(BodyIndex i, Instant t);
+
+  /// What a force does between two surfaces in touch that slide along each other, or are driven.
+  struct Rub {
+    BodyIndex a = 0;
+    BodyIndex b = 0;
+    bool slides = false;
+    bool rides = false;               ///< sticks to what is driven
+    bool curved = false;              ///< slides: its direction changes, `spent` tells the work
+    Vector3 force = Vector3::Zero();  ///< on b, N
+    Vector3 along = Vector3::Zero();  ///< its tangential part
+    Vector3 arm_a = Vector3::Zero();  ///< of spheres, from the centre to where they touch, m
+    Vector3 arm_b = Vector3::Zero();
+    Vector3 belt_a = Vector3::Zero();  ///< velocity of the surface beside that of the body, m/s
+    Vector3 belt_b = Vector3::Zero();
+    Polynomial<3> spent{};  ///< since `begun`, as the x, J
+    Instant begun{};
+    BodyState from_a{};  ///< as far as the ledger has followed it
+    BodyState from_b{};
+    Instant booked{};
+
+    void persist(Archive& archive);
+  };
+  /// Body i, held since t, is rubbed until it is held or launched anew: its work is booked with i.
+  void rub(BodyIndex i, Instant t, Rub rub);
   /// The segment of a body has ended: the next one.
   void go_on(BodyIndex i, Instant t);
   /// Body i has the hand's translation from t on, and its own orientation; what takes it from where
@@ -99,6 +127,7 @@ class EventMotions {
     Motion motion;
     std::optional<Support> support;
     std::vector<BodyIndex> fields;
+    std::vector<Rub> rubs;
 
     void persist(Archive& archive);
   };
@@ -131,6 +160,7 @@ class EventMotions {
   [[nodiscard]] Vector3 acting_force(BodyIndex i, Instant t, const BodyState& state) const;
 
   void book(Flow& flow, Instant t);
+  void book_rubs(BodyIndex i, Instant t);
   [[nodiscard]] double riding_work(const Flow& flow, Instant t);
   [[nodiscard]] double new_roundoff(Flow& flow, Instant t);
 

@@ -56,7 +56,7 @@ void EventWorld::take() {
     case Due::support_ends:
       return contacts_.leave_support(event.a, event.time);
     case Due::mode_ends:
-      return contacts_.settle_anew(event.a, event.time);
+      return contacts_.settle_anew(run_.model.is_free(event.a) ? event.a : event.b, event.time);
     case Due::stays:
       return contacts_.stay(event.a, event.b, event.time);
     case Due::epoch_end:

@@ -83,12 +83,14 @@ struct Guards {
     }
     const Vector3& n = patch.manifold.normal;
     double force = 0.0;
+    Vector3 along = Vector3::Zero();  // of the force, on the plane of the patch
     Polynomial<3> moment;
     moment.resize(2);
     for (const std::size_t k : side) {
       const Vector3 f =
           (mode.accelerations[k].linear - group.loads[k].linear) / group.bodies[k].inverse_mass;
       force += n.dot(f);
+      along += f - n * n.dot(f);
       const Polynomial<3>& x = motions[k].position;
       for (int c = 0; c <= x.degree(); ++c) {
         moment[c] += Vector3(x[c]).cross(f);
@@ -98,6 +100,9 @@ struct Guards {
     point.position.resize(2);
     for (int c = 0; c <= 2; ++c) {
       point.position[c] = n.cross(Vector3(moment[c])) / force;
+    }
+    if (!mode.force.empty()) {
+      point.position[0] += along * (n.dot(patch.manifold.points[0].position) / force);
     }
     return point;
   }

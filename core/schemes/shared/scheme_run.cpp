@@ -20,13 +20,15 @@ SchemeRun::SchemeRun(const Model& of, const Method& method, const SchemeOptions&
 }
 
 ImpactEnergy SchemeRun::exchange(Event& event, BodyState& a, BodyState& b, Vector3& force_a,
-                                 Vector3& force_b) {
+                                 Vector3& force_b, bool flat) {
   event.before_a = a;
   event.before_b = b;
   event.contact.restitution = model.restitution(event.a, event.b);
   event.contact.friction = model.friction(event.a, event.b);
-  const ImpactBody body_a{model.body(event.a), model.inertia(event.a), a, force_a};
-  const ImpactBody body_b{model.body(event.b), model.inertia(event.b), b, force_b};
+  const BodyInertia inertia_a = flat ? flat_inertia(event.a) : model.inertia(event.a);
+  const BodyInertia inertia_b = flat ? flat_inertia(event.b) : model.inertia(event.b);
+  const ImpactBody body_a{model.body(event.a), inertia_a, a, force_a};
+  const ImpactBody body_b{model.body(event.b), inertia_b, b, force_b};
   const ImpactEnergy energy = law.apply(event.contact, body_a, body_b);
   event.after_a = a;
   event.after_b = b;
@@ -47,6 +49,12 @@ ImpactEnergy SchemeRun::exchange(Event& event, BodyState& a, BodyState& b, Vecto
   ++cost.impacts;
   note(event);
   return energy;
+}
+
+BodyInertia SchemeRun::flat_inertia(BodyIndex i) const {
+  BodyInertia inertia = model.inertia(i);
+  inertia.rotates = inertia.rotates && std::holds_alternative<Sphere>(model.shape(i));
+  return inertia;
 }
 
 void SchemeRun::note(const Event& event) {

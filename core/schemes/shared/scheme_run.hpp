@@ -30,9 +30,11 @@ struct SchemeRun {
 
   /// The impact law changes the states (and adds to the net forces, N) of the two bodies of the
   /// event, whose time and contact are set; counted and told. To book the answer is left to who
-  /// knows what of it is the impact's.
+  /// knows what of it is the impact's. `flat`: it turns nothing but spheres.
   ImpactEnergy exchange(Event& event, BodyState& a, BodyState& b, Vector3& force_a,
-                        Vector3& force_b);
+                        Vector3& force_b, bool flat = false);
+  /// Inertia of body i as an impact sees it that turns nothing but spheres.
+  [[nodiscard]] BodyInertia flat_inertia(BodyIndex i) const;
   /// An event at which no state jumps.
   void note(const Event& event);
   /// Events that are found out of order are kept from here on, until they are told in order.

@@ -35,11 +35,6 @@ double first_positive(const Polynomial<3>& f, double lo, double hi, int depth) {
   return std::isfinite(early) ? early : first_positive(f, middle, hi, depth - 1);
 }
 
-double first_positive(const Polynomial<3>& f, double duration) {
-  constexpr int halvings = 60;  // of the duration: beyond the resolution of its double
-  return duration > 0.0 ? first_positive(f, 0.0, duration, halvings) : infinity;
-}
-
 /// (p - q).axis + constant, as the x of a polynomial.
 Polynomial<3> along(const Polynomial<3>& p, const Polynomial<3>& q, const Vector3& axis,
                     double constant) {
@@ -71,6 +66,11 @@ int face_axis(const Quaternion& q_WB, const Vector3& normal) {
 }
 
 }  // namespace
+
+double first_positive(const Polynomial<3>& f, double duration) {
+  constexpr int halvings = 60;  // of the duration: beyond the resolution of its double
+  return duration > 0.0 ? first_positive(f, 0.0, duration, halvings) : infinity;
+}
 
 void Support::persist(Archive& archive) { archive(surface, normal); }
 

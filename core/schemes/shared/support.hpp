@@ -39,6 +39,10 @@ struct Support {
 [[nodiscard]] double lift_off_time(const Motion& surface_motion, const Vector3& normal, double mass,
                                    const Vector3& force);
 
+/// First time in [0, duration] at which the x of a polynomial is positive, s, to the resolution of
+/// the duration; infinite if it is nowhere.
+[[nodiscard]] double first_positive(const Polynomial<3>& f, double duration);
+
 /// When a surface first stops pressing, s: the first change of sign of the contact force (N, at a
 /// local time) within `duration`, among 32 samples; infinite if it presses at all of them.
 [[nodiscard]] double release_time(const std::function<double(double)>& contact_force,

@@ -1,0 +1,280 @@
+#include "core/contacts/routh_impact.hpp"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+using Vector2 = Eigen::Vector2d;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// A direction that turns by less than this part of a radian over its sliding is kept.
+constexpr double straight = 1e-13;
+/// Sliding that is left of what there was, when it is finished on a straight line.
+constexpr double nearly_stopped = 1e-12;
+constexpr int most_phases = 16;
+constexpr int most_steps = 100000;
+
+/// The impact so far.
+struct Course {
+  Vector3 u;                    ///< m/s
+  Vector3 p = Vector3::Zero();  ///< N s
+  double rubbed = 0.0;          ///< work of the tangential impulse, J
+  double work = 0.0;            ///< of the normal impulse, J; < 0 while pressed together
+  double most = 0.0;            ///< |work| when the approach ended
+  bool springs_back = false;
+};
+
+class Routh {
+ public:
+  Routh(const Matrix3& W, double mu, double e) : W_(W), mu_(mu), e_(e) {}
+
+  RouthImpact run(const Vector3& u) {
+    course_.u = u;
+    slip_ = u.tail<2>().norm();
+    if (std::isinf(mu_)) {
+      stop_at_once();
+    }
+    for (int phase = 0; phase < most_phases && !over_; ++phase) {
+      const Vector2 t = course_.u.tail<2>();
+      if (t.norm() <= std::numeric_limits<double>::epsilon() * std::max(slip_, u.norm())) {
+        hold_still();
+        stopped();
+      } else {
+        slide(t.normalized());
+      }
+    }
+    return {course_.p, course_.u, course_.work, course_.rubbed, jammed_, over_ && !failed_};
+  }
+
+ private:
+  /// Rates of u and p with the normal impulse, while the tangential one is f times it.
+  [[nodiscard]] Vector3 push(const Vector2& f) const { return Vector3(1.0, f[0], f[1]); }
+
+  /// Takes what is left of the sliding: all of it, or roundoff.
+  void hold_still() {
+    const Vector2 left = course_.u.tail<2>();
+    const Vector2 f = -(W_.block<2, 2>(1, 1).inverse() * left);
+    const Vector3 p(0.0, f[0], f[1]);
+    course_.p += p;
+    course_.u += W_ * p;
+    course_.rubbed += 0.5 * f.dot(left);
+    course_.u.tail<2>().setZero();
+  }
+
+  /// By friction without bound sliding stops before anything is pressed.
+  void stop_at_once() {
+    hold_still();
+    over_ = course_.u[0] >= 0.0;
+  }
+
+  /// At rest along the surface: friction holds, or something begins to slide.
+  void stopped() {
+    const Vector2 hold = -(W_.block<2, 2>(1, 1).inverse() * W_.block<2, 1>(1, 0));
+    if (hold.norm() <= mu_) {
+      return along(push(hold), infinity, true);
+    }
+    if (const std::optional<Vector2> d = leaving()) {
+      return along(push(-mu_ * *d), infinity, false);
+    }
+    fail();
+  }
+
+  /// Where it slides from rest: along what friction leaves of W_tn.
+  [[nodiscard]] std::optional<Vector2> leaving() const {
+    const auto pull = [&](double angle) -> Vector2 {
+      const Vector2 d(std::cos(angle), std::sin(angle));
+      return W_.block<2, 1>(1, 0) - mu_ * (W_.block<2, 2>(1, 1) * d);
+    };
+    const auto across = [&](double angle) {
+      const Vector2 g = pull(angle);
+      return std::cos(angle) * g[1] - std::sin(angle) * g[0];
+    };
+    const double first = std::atan2(W_(2, 0), W_(1, 0));
+    const Vector2 d(std::cos(first), std::sin(first));
+    if (std::abs(across(first)) <= straight * W_.block<2, 1>(1, 0).norm() &&
+        pull(first).dot(d) > 0.0) {
+      return Vector2(W_.block<2, 1>(1, 0).normalized());
+    }
+    constexpr int parts = 720;
+    for (int k = 0; k < parts; ++k) {
+      double from = first + 2.0 * M_PI * k / parts;
+      double to = first + 2.0 * M_PI * (k + 1) / parts;
+      const double low = across(from);
+      if (low * across(to) > 0.0) {
+        continue;
+      }
+      for (int halvings = 0; halvings < 60; ++halvings) {
+        const double middle = 0.5 * (from + to);
+        (low * across(middle) > 0.0 ? from : to) = middle;
+      }
+      const Vector2 found(std::cos(from), std::sin(from));
+      if (pull(from).dot(found) > 0.0) {
+        return found;
+      }
+    }
+    return std::nullopt;
+  }
+
+  /// Whether sliding as it does now does not turn.
+  [[nodiscard]] bool keeps_direction() const {
+    const Vector2 d = course_.u.tail<2>().normalized();
+    const Vector2 rate = (W_ * push(-mu_ * d)).tail<2>();
+    return std::abs(d[0] * rate[1] - d[1] * rate[0]) <= straight * rate.norm();
+  }
+
+  void slide(const Vector2& d) {
+    const Vector3 p = push(-mu_ * d);
+    const Vector3 rate = W_ * p;
+    const double braking = -d.dot(rate.tail<2>());
+    const double speed = course_.u.tail<2>().norm();
+    jammed_ = jammed_ || rate[0] <= 0.0;
+    if (mu_ == 0.0) {
+      return along(p, infinity, false);
+    }
+    if (keeps_direction() || speed <= nearly_stopped * slip_) {
+      return along(p, braking > 0.0 ? speed / braking : infinity, false);
+    }
+    turn();
+  }
+
+  /// On a straight line in p, at most for `most`.
+  void along(const Vector3& p, double most, bool sticks) {
+    const Vector3 rate = W_ * p;
+    for (int part = 0; part < 2 && !over_; ++part) {
+      const double k = rate[0];
+      const double u = course_.u[0];
+      double until = infinity;
+      if (!course_.springs_back) {
+        until = k > 0.0 ? std::max(-u, 0.0) / k : infinity;
+      } else {
+        // Work still to be given back: u x + k x^2 / 2.
+        const double left = e_ * e_ * course_.most - (course_.work + course_.most);
+        const double root = u * u + 2.0 * k * std::max(left, 0.0);
+        until = root < 0.0 ? infinity : 2.0 * std::max(left, 0.0) / (u + std::sqrt(root));
+        until = left > 0.0 ? until : 0.0;
+      }
+      const double x = std::min(until, most);
+      if (!std::isfinite(x)) {
+        return fail();
+      }
+      course_.work += x * (u + 0.5 * k * x);
+      course_.rubbed += x * p.tail<2>().dot(course_.u.tail<2>() + 0.5 * x * rate.tail<2>());
+      course_.p += x * p;
+      course_.u += x * rate;
+      most -= x;
+      if (x < until) {  // it stops sliding
+        hold_still();
+        return;
+      }
+      reached();
+      if (sticks) {
+        course_.u.tail<2>().setZero();
+      }
+    }
+  }
+
+  /// The approach is over, or all is.
+  void reached() {
+    if (course_.springs_back) {
+      over_ = true;
+      return;
+    }
+    course_.u[0] = 0.0;
+    course_.springs_back = true;
+    course_.most = -course_.work;
+    over_ = e_ == 0.0;
+  }
+
+  void fail() {
+    over_ = true;
+    failed_ = true;
+  }
+
+  /// Sliding that turns, with x for which dp = |u_t| dx: u_t decays and is nowhere singular.
+  void turn() {
+    using State = Eigen::Matrix<double, 8, 1>;  // u, p, work of both
+    const auto rate = [&](const State& s) {
+      const Vector2 t = s.segment<2>(1);
+      const double speed = t.norm();
+      const Vector3 p(speed, -mu_ * t[0], -mu_ * t[1]);
+      State r;
+      r << W_ * p, p, s[0] * speed, -mu_ * t.squaredNorm();
+      return r;
+    };
+    const auto step = [&](const State& s, double h) -> State {  // [Dormand1980]
+      const State k1 = rate(s);
+      const State k2 = rate(s + h * (k1 / 5.0));
+      const State k3 = rate(s + h * (3.0 / 40.0 * k1 + 9.0 / 40.0 * k2));
+      const State k4 = rate(s + h * (44.0 / 45.0 * k1 - 56.0 / 15.0 * k2 + 32.0 / 9.0 * k3));
+      const State k5 = rate(s + h * (19372.0 / 6561.0 * k1 - 25360.0 / 2187.0 * k2 +
+                                     64448.0 / 6561.0 * k3 - 212.0 / 729.0 * k4));
+      const State k6 =
+          rate(s + h * (9017.0 / 3168.0 * k1 - 355.0 / 33.0 * k2 + 46732.0 / 5247.0 * k3 +
+                        49.0 / 176.0 * k4 - 5103.0 / 18656.0 * k5));
+      return s + h * (35.0 / 384.0 * k1 + 500.0 / 1113.0 * k3 + 125.0 / 192.0 * k4 -
+                      2187.0 / 6784.0 * k5 + 11.0 / 84.0 * k6);
+    };
+    const auto ends = [&](const State& s) {
+      return course_.springs_back ? s[6] + course_.most - e_ * e_ * course_.most >= 0.0
+                                  : s[0] >= 0.0;
+    };
+    State s;
+    s << course_.u, course_.p, course_.work, course_.rubbed;
+    const double h = 0.01 / ((1.0 + mu_) * W_.norm());
+    for (int k = 0; k < most_steps; ++k) {
+      State next = step(s, h);
+      const bool end = ends(next);
+      if (end) {
+        double low = 0.0;
+        double high = h;
+        for (int halvings = 0; halvings < 60; ++halvings) {
+          const double middle = 0.5 * (low + high);
+          (ends(step(s, middle)) ? high : low) = middle;
+        }
+        next = step(s, high);
+      }
+      s = next;
+      course_.u = s.head<3>();
+      course_.p = s.segment<3>(3);
+      course_.work = s[6];
+      course_.rubbed = s[7];
+      if (end) {
+        return reached();
+      }
+      if (s.segment<2>(1).norm() <= nearly_stopped * slip_ || keeps_direction()) {
+        return;
+      }
+    }
+    fail();
+  }
+
+  const Matrix3& W_;
+  double mu_;
+  double e_;
+  Course course_{};
+  double slip_ = 0.0;  ///< at first, m/s
+  bool over_ = false;
+  bool failed_ = false;
+  bool jammed_ = false;
+};
+
+}  // namespace
+
+RouthImpact routh_impact(const Matrix3& W, const Vector3& u, double mu, double e) {
+  return Routh(W, mu, e).run(u);
+}
+
+bool painleve(const Matrix3& W, double mu, const Eigen::Vector2d& d) {
+  return W(0, 0) - mu * (W(0, 1) * d[0] + W(0, 2) * d[1]) <= 0.0;
+}
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,132 @@
+#include "core/schemes/event/driven_mode.hpp"
+
+#include "core/schemes/shared/support.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Accelerations below this part of the largest are roundoff.
+constexpr double roundoff = 1e-12;
+/// What ends within this part of the window ends at once.
+constexpr double at_once = 1e-12;
+
+/// sum |c_k . axis| s^k.
+double most(const Polynomial<3>& p, const Vector3& axis, double s) {
+  double sum = 0.0;
+  for (int k = p.degree(); k >= 0; --k) {
+    sum = sum * s + std::abs(axis.dot(Vector3(p[k])));
+  }
+  return sum;
+}
+
+/// factor p . axis + constant, as the x of a polynomial.
+Polynomial<3> along(const Polynomial<3>& p, const Vector3& axis, double factor, double constant) {
+  Polynomial<3> f;
+  f.resize(p.degree());
+  for (int k = 0; k <= p.degree(); ++k) {
+    f[k] = Vector3(factor * axis.dot(Vector3(p[k])), 0.0, 0.0);
+  }
+  f[0].x() += constant;
+  return f;
+}
+
+}  // namespace
+
+DrivenMode driven_mode(const DrivenTouch& touch, const Motion& under) {
+  DrivenMode mode;
+  const double window = std::min(touch.duration, under.duration);
+  const Vector3& n = touch.normal;
+  const Polynomial<3> A = under.velocity.differentiated();
+  const double pressing = -touch.load.dot(n);
+  const Vector3 pull = touch.load + n * pressing;
+  const Vector3 v = under.twist(0.0).linear;
+  Vector3 slip = touch.body.twist.linear - v;
+  slip -= n * n.dot(slip);
+  double largest = touch.load.norm();
+  for (int axis = 0; axis < 3; ++axis) {
+    largest = std::max(largest, most(A, Vector3::Unit(axis), window));
+  }
+  if (!(pressing > 0.0)) {
+    mode.refusal = "nothing presses";
+    return mode;
+  }
+  if (under.rotation != RotationKind::fixed || most(A, n, window) > roundoff * largest) {
+    mode.refusal = "what carries it is driven, and not straight along its face";
+    return mode;
+  }
+  Vector3 line = pull;
+  for (int k = 0; k <= A.degree(); ++k) {
+    line = Vector3(A[k]).norm() > line.norm() ? Vector3(A[k]) : line;
+  }
+  if (slip.norm() > touch.still) {
+    line = slip;
+  }
+  line -= n * n.dot(line);
+  const double length = line.norm();
+  const Vector3 x = length > 0.0 ? Vector3(line / length) : n.unitOrthogonal();
+  const Vector3 y = n.cross(x);
+  if (most(A, y, window) > roundoff * largest || std::abs(y.dot(pull)) > roundoff * largest) {
+    mode.refusal = "a body slides on a curved path";
+    return mode;
+  }
+  const double most_friction = touch.friction * pressing;
+  Vector3 d = x;  // where it slides
+  if (slip.norm() <= touch.still) {
+    // What friction must give along x: A - pull.
+    const double offset = -x.dot(pull);
+    double ends = infinity;
+    bool forwards = true;
+    for (const double sign : {1.0, -1.0}) {
+      const Polynomial<3> beyond = along(A, x, sign, sign * offset - most_friction);
+      const double s = std::isinf(most_friction) ? infinity : first_positive(beyond, window);
+      if (s < ends) {
+        ends = s;
+        forwards = sign < 0.0;
+      }
+    }
+    if (ends > at_once * window) {
+      mode.slip = Slip::sticks;
+      mode.leans = std::min(touch.friction, (most(A, x, window) + std::abs(offset)) / pressing) * x;
+      mode.motion = under;
+      mode.motion.duration = window;
+      mode.motion.position[0] = touch.body.pose.position;
+      const Quaternion& q = touch.body.pose.orientation;
+      mode.motion.quaternion = Polynomial<4>(Vector4(q.w(), q.x(), q.y(), q.z()));
+      mode.velocity = v;
+      mode.until = ends;
+      return mode;
+    }
+    d = forwards ? x : Vector3(-x);  // it lags behind
+    mode.slip = Slip::begins;
+    slip.setZero();
+  } else {
+    mode.slip = Slip::slides;
+  }
+  if (std::isinf(most_friction)) {
+    mode.refusal = "what is rough slides";
+    return mode;
+  }
+  mode.pushes = pressing * n - most_friction * d;
+  mode.leans = -touch.friction * d;
+  mode.velocity = v + slip;
+  const Vector3 acceleration = pull - most_friction * d;
+  Motion own = Motion::ballistic(under.start, window, touch.body.pose,
+                                 {mode.velocity, Vector3::Zero()}, acceleration);
+  mode.motion = ride(own, under, n);
+  // -(v - V) . d > 0: it has stopped. What begins to slide has had a moment to do so.
+  Polynomial<3> back = along(under.velocity, d, 1.0, -d.dot(mode.velocity));
+  back.resize(std::max(back.degree(), 1));
+  back[1].x() -= d.dot(acceleration);
+  const double moment = mode.slip == Slip::begins ? 1e-6 * window : 0.0;
+  mode.until = moment + first_positive(back.shifted(moment), window - moment);
+  return mode;
+}
+
+}  // namespace core
+}  // namespace kairos

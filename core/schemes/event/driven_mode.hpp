@@ -1,0 +1,38 @@
+#pragma once
+
+#include "core/contacts/flat_modes.hpp"
+#include "core/motion.hpp"
+
+#include <string>
+
+namespace kairos {
+inline namespace core {
+
+/// A body that does not turn, on a plane that is driven straight along itself.
+struct DrivenTouch {
+  BodyState body;
+  Vector3 load = Vector3::Zero();    ///< acceleration without contact forces, m/s^2
+  Vector3 normal = Vector3::Zero();  ///< from the plane to the body
+  double friction = 0.0;
+  double still = 0.0;     ///< m/s; what slides slower than this does not
+  double duration = 0.0;  ///< s, that is looked at
+};
+
+/// How it goes on, and until when.
+struct DrivenMode {
+  std::string refusal;  ///< why that is not known; empty: it is
+  Slip slip = Slip::none;
+  Motion motion;                       ///< of the body
+  Vector3 velocity = Vector3::Zero();  ///< of it now, m/s
+  Vector3 pushes = Vector3::Zero();    ///< what the plane gives it, m/s^2, constant if it slides
+  Vector3 leans = Vector3::Zero();     ///< largest that friction is, of what presses
+  double until = 0.0;                  ///< when it stops sliding or begins to, s; may be infinite
+};
+
+/// Sticks as long as friction can give it the acceleration of the plane; slides against mu N
+/// otherwise. Both ends are roots of polynomials, for the motion of the plane is one; `under` is
+/// that, from now on. All must lie on one line: the motion, what slides, what pulls.
+[[nodiscard]] DrivenMode driven_mode(const DrivenTouch& touch, const Motion& under);
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,149 @@
+// One contact with friction during an impact, against closed forms and what defines it.
+
+#include "core/contacts/routh_impact.hpp"
+
+#include "core/contacts/contact_system.hpp"
+#include "core/random.hpp"
+#include "tests/catch.hpp"
+
+#include <cmath>
+
+using namespace kairos;
+
+namespace {
+
+/// 1/kg, of a body of mass 1 against what does not move, pushed at an arm.
+Matrix3 felt(const Vector3& arm, const Vector3& moments, const Matrix3& axes) {
+  Matrix3 levers;
+  for (int k = 0; k < 3; ++k) {
+    levers.col(k) = arm.cross(axes.col(k));
+  }
+  return Matrix3::Identity() + levers.transpose() * moments.cwiseInverse().asDiagonal() * levers;
+}
+
+/// Axes n, t1, t2 of a floor.
+Matrix3 floor_axes() {
+  Matrix3 axes;
+  axes.col(0) = Vector3::UnitY();
+  axes.col(1) = Vector3::UnitX();
+  axes.col(2) = axes.col(0).cross(axes.col(1));
+  return axes;
+}
+
+/// A plate of 1 kg with half-extents a, b (in the plane), its long axis at an angle, on a corner.
+Matrix3 on_corner(double a, double b, double angle) {
+  const double inertia = (a * a + b * b) / 3.0;
+  const Vector3 arm(-a * std::cos(angle) + b * std::sin(angle),
+                    -a * std::sin(angle) - b * std::cos(angle), 0.0);
+  return felt(arm, {1e30, 1e30, inertia}, floor_axes());
+}
+
+}  // namespace
+
+TEST_CASE("routh 12: a box hits with a corner, and its sliding is reversed", "[routh][reference]") {
+  const Matrix3 W = on_corner(0.5, 0.1, 40.0 * M_PI / 180.0);
+  const Vector3 before(-2.0, 1.0, 0.0);
+  const RouthImpact impact = routh_impact(W, before, 0.3, 0.5);
+  REQUIRE(impact.solved);
+  CHECK(std::abs(impact.velocity[1] + 0.611988689090) <= 1e-12);
+  CHECK(std::abs(impact.velocity[0] - 0.852878799699) <= 1e-12);
+  const double energy = 0.5 * impact.impulse.dot(before + impact.velocity);
+  CHECK(std::abs(energy + 0.785709093289) <= 1e-12);
+}
+
+TEST_CASE("routh 11: a ball slides, or rolls away; without friction Newton", "[routh][reference]") {
+  const Matrix3 W = felt({0.0, -0.25, 0.0}, Vector3::Constant(0.4 * 0.0625), floor_axes());
+  const Vector3 before(-4.0, 3.0, 0.0);
+  const auto slides = routh_impact(W, before, 0.1, 0.8);
+  CHECK(std::abs(3.0 + slides.impulse[1] - 2.28) <= 1e-15);
+  const auto rolls = routh_impact(W, before, 0.3, 0.8);
+  CHECK(std::abs(3.0 + rolls.impulse[1] - 15.0 / 7.0) <= 1e-15);
+  CHECK(rolls.velocity[1] == 0.0);
+  const auto rough = routh_impact(W, before, INFINITY, 0.8);
+  CHECK(std::abs(rough.impulse[1] - rolls.impulse[1]) <= 1e-15);
+  for (const double e : {0.0, 0.3, 1.0}) {
+    const auto smooth = routh_impact(W, before, 0.0, e);
+    CHECK(std::abs(smooth.velocity[0] - 4.0 * e) <= 4e-15);
+    CHECK(smooth.impulse.tail<2>().isZero(0.0));
+  }
+}
+
+TEST_CASE("routh: restitution is Stronge's, friction never gains, impulses stay in their cone",
+          "[routh]") {
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    CAPTURE(seed);
+    Random random(2026, seed);
+    const auto pick = [&](double low, double high) { return random.uniform(low, high); };
+    const Vector3 arm(pick(-1, 1), pick(-1, 0), pick(-1, 1));
+    const Matrix3 W = felt(arm, {pick(0.05, 1), pick(0.05, 1), pick(0.05, 1)}, floor_axes());
+    const Vector3 before(-pick(0.1, 2), pick(-2, 2), seed % 3 == 0 ? 0.0 : pick(-2, 2));
+    const double mu = seed % 7 == 0 ? INFINITY : pick(0.0, 0.6);
+    const double e = pick(0.0, 1.0);
+    const RouthImpact impact = routh_impact(W, before, mu, e);
+    if (!impact.solved) {
+      CHECK(impact.jammed);  // only where pressing does not part them
+      continue;
+    }
+    CHECK(impact.velocity[0] >= 0.0);
+    CHECK((impact.velocity - before - W * impact.impulse).norm() <= 1e-11);
+    const double gained = 0.5 * impact.impulse.dot(before + impact.velocity);
+    CHECK(gained <= 1e-12);
+    CHECK(impact.friction_work <= 1e-14);
+    CHECK(impact.normal_work <= 1e-14);
+    CHECK(std::abs(impact.normal_work + impact.friction_work - gained) <= 1e-12);
+    if (std::isfinite(mu)) {
+      CHECK(impact.impulse.tail<2>().norm() <= mu * impact.impulse[0] * (1.0 + 1e-12) + 1e-15);
+    }
+  }
+}
+
+TEST_CASE("routh: sliding that turns, against many small impulses", "[routh]") {
+  const Matrix3 W = felt({0.4, -0.5, 0.3}, {0.2, 0.3, 0.1}, floor_axes());
+  const Vector3 before(-1.0, 0.8, 1.1);
+  const double mu = 0.2;
+  const RouthImpact impact = routh_impact(W, before, mu, 0.0);
+  REQUIRE(impact.solved);
+  // The midpoint rule in the normal impulse, up to where the approach ends.
+  const auto at_end = [&](int steps) {
+    const auto rate = [&](const Vector3& u) {
+      const Eigen::Vector2d d = u.tail<2>().normalized();
+      return Vector3(W * Vector3(1.0, -mu * d[0], -mu * d[1]));
+    };
+    Vector3 u = before;
+    const double h = impact.impulse[0] / steps;
+    for (int k = 0; k < steps; ++k) {
+      u += h * rate(u + 0.5 * h * rate(u));
+    }
+    return u;
+  };
+  const double coarse = (at_end(1000) - impact.velocity).norm();
+  const double fine = (at_end(2000) - impact.velocity).norm();
+  CHECK(fine <= 1e-6);
+  CHECK(coarse / fine == Approx(4.0).epsilon(0.05));  // of order 2, to the same limit
+}
+
+TEST_CASE("routh 13: Painleve's angles of a rod and of a thin box", "[routh][reference]") {
+  // A rod of length 2 slides on its end at the angle theta: the sign of W_nn - mu W_nt.d changes.
+  const auto edge = [](double half, double thick, double mu, double from, double to) {
+    const auto paradox = [&](double theta) {
+      // Sliding towards where the rod leans from: the corner that is lowest.
+      return painleve(on_corner(half, thick, theta), mu, {1.0, 0.0}) ||
+             painleve(on_corner(half, thick, theta), mu, {-1.0, 0.0});
+    };
+    REQUIRE(paradox(from) != paradox(to));
+    for (int k = 0; k < 60; ++k) {
+      const double middle = 0.5 * (from + to);
+      (paradox(middle) == paradox(from) ? from : to) = middle;
+    }
+    return from;
+  };
+  CHECK(std::abs(edge(0.5, 0.0, 1.5, 0.5, 1.1) - 0.883862626373) <= 1e-11);
+  CHECK(std::abs(edge(0.5, 0.0, 1.5, 1.1, 1.5) - 1.27493630397) <= 1e-11);
+  CHECK(std::abs(edge(0.5, 0.01, 1.5, 0.5, 1.1) - 0.863865292400) <= 1e-11);
+  CHECK(std::abs(edge(0.5, 0.01, 1.5, 1.1, 1.5) - 1.25493897000) <= 1e-11);
+  // Of a thin rod none below mu = 4/3.
+  for (double theta = 0.0; theta < 1.57; theta += 1e-3) {
+    CHECK_FALSE(painleve(on_corner(0.5, 0.0, theta), 4.0 / 3.0 - 1e-9, {1.0, 0.0}));
+    CHECK_FALSE(painleve(on_corner(0.5, 0.0, theta), 4.0 / 3.0 - 1e-9, {-1.0, 0.0}));
+  }
+}
