@@ -116,7 +116,7 @@ std::string figures_html(const Entries& entries, const ReportEntry& entry) {
 
 /// A figure of the thesis: what it shows there, how it is made here, what it shows now.
 std::string thesis_figure_html(const Entries& entries, const ReportEntry& entry) {
-  std::string out = fmt::format("<article id=\"{}\"><h3 class=\"title\">{}</h3>\n",
+  std::string out = fmt::format("<article id=\"{}\"><h2 class=\"title\">{}</h2>\n",
                                 html(entry.name), html(entry.entry("title")));
   out += paragraph("asks", entry.entry("asks"));
   out += paragraph("how", entry.entry("how"));
@@ -256,6 +256,19 @@ class Pages {
                                          : html(entry.name);
   }
 
+  /// A part of the paper as a page of its own: its headings begin at the first level.
+  static std::string raised(std::string text) {
+    for (const auto& [from, to] : {std::pair{"h3", "h1"}, {"h4", "h2"}}) {
+      for (const char* const mark : {"<", "</"}) {
+        const std::string tag = std::string(mark) + from;
+        for (std::size_t at = text.find(tag); at != std::string::npos; at = text.find(tag, at)) {
+          text.replace(at, tag.size(), std::string(mark) + to);
+        }
+      }
+    }
+    return text;
+  }
+
   /// A page for each part of the paper, and one for what it cites.
   void add_paper() {
     const std::string& text = paper_.page.html;
@@ -265,7 +278,7 @@ class Pages {
     const auto add = [this](const std::string& file, const std::string& title,
                             const std::string& inside) {
       pages_.push_back({file, title, "The paper", "",
-                        fmt::format("<section class=\"paper\">{}</section>\n", inside)});
+                        fmt::format("<section class=\"paper\">{}</section>\n", raised(inside))});
     };
     std::size_t from = 0;
     std::string file = "paper.html";

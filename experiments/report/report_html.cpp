@@ -92,7 +92,9 @@ std::string readable(const std::string& cell) {
 
 std::string csv_table_html(const std::string& path) {
   const Table table = read_csv(path);
-  std::string out = "<div class=\"scroll\"><table><thead><tr>";
+  std::string out =
+      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" "
+      "aria-label=\"Table\"><table><thead><tr>";
   for (const std::string& column : table.columns) {
     out += header_cell(column);
   }
@@ -118,9 +120,10 @@ std::string errata_html(const ReportEntry& entry) {
     return tolerance == "0" ? kind : readable(tolerance) + " (" + kind + ")";
   };
   std::string out =
-      "<div class=\"scroll\"><table class=\"errata\"><thead><tr><th></th><th "
+      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Table\"><table "
+      "class=\"errata\"><thead><tr><td></td><th "
       "class=\"text\">measured by a "
-      "run</th><th></th><th>predicted</th><th>measured</th><th>unit</th>"
+      "run</th><td></td><th>predicted</th><th>measured</th><th>unit</th>"
       "<th>agree to</th><th>verdict</th></tr></thead>\n";
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const std::string id = text(i, "id");
@@ -182,7 +185,9 @@ std::string summary_html(const std::string& folder, const std::string& sweep, st
     return "";
   }
   const Layout layout = layout_of(table);
-  std::string out = "<div class=\"scroll\"><table><thead><tr>";
+  std::string out =
+      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" "
+      "aria-label=\"Table\"><table><thead><tr>";
   for (std::size_t i = 0; i < layout.point; ++i) {
     out += header_cell(table.columns[i], i == 0);
   }
@@ -234,7 +239,9 @@ std::string overview_html(const std::string& folder, const std::vector<std::stri
       }
     }
   }
-  std::string out = "<div class=\"scroll\"><table class=\"wide\"><thead><tr><th></th>";
+  std::string out =
+      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Table\"><table "
+      "class=\"wide\"><thead><tr><td></td>";
   for (const std::string& sweep : sweeps) {
     out += fmt::format("<th class=\"group\" colspan=\"{}\">{}</th>", shown.size(), html(sweep));
   }
