@@ -76,14 +76,14 @@ constexpr std::array<NamedBroadPhase, 3> broad_phase_catalogue{
      {"dynamic-tree", ccd::make_dynamic_tree}}};
 
 bool has_integrator(std::string_view name) {
-  const auto all = integrators();
+  const auto all = integrator_entries();
   return std::any_of(all.begin(), all.end(),
                      [name](const IntegratorEntry& entry) { return entry.info.name == name; });
 }
 
 const IntegratorEntry& find_entry(std::string_view name) {
   std::vector<std::string_view> names{"auto"};
-  for (const IntegratorEntry& entry : integrators()) {
+  for (const IntegratorEntry& entry : integrator_entries()) {
     if (entry.info.name == name) {
       return entry;
     }
@@ -119,7 +119,7 @@ std::span<const std::shared_ptr<const ImpactLaw>> impact_laws() {
   return entries;
 }
 
-std::span<const IntegratorEntry> integrators() {
+std::span<const IntegratorEntry> integrator_entries() {
   static const std::vector<IntegratorEntry> entries = [] {
     std::vector<IntegratorEntry> made;
     for (const auto& [info, make] : integrators::catalogue()) {

@@ -20,7 +20,8 @@ struct IntegratorEntry {
 };
 
 [[nodiscard]] std::span<const std::shared_ptr<const Scheme>> schemes();
-[[nodiscard]] std::span<const IntegratorEntry> integrators();
+/// Of another name than the others: `integrators` is the namespace that they live in.
+[[nodiscard]] std::span<const IntegratorEntry> integrator_entries();
 [[nodiscard]] std::span<const std::shared_ptr<const ContactDetector>> detectors();
 [[nodiscard]] std::span<const std::shared_ptr<const ImpactLaw>> impact_laws();
 

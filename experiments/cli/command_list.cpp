@@ -53,7 +53,7 @@ Listing list_integrators() {
                   {}};
   listing.rows.push_back({"auto", "", "", "", "", "", "", "", "",
                           "closed-form where the model allows it, a Runge-Kutta method otherwise"});
-  for (const IntegratorEntry& entry : integrators()) {
+  for (const IntegratorEntry& entry : integrator_entries()) {
     const StepperInfo& info = entry.info;
     listing.rows.push_back({std::string(info.name), order(info.order), order(info.position_order),
                             order(info.velocity_order), yes_or_no(info.variable_order),

@@ -68,7 +68,7 @@ void run(Combination& c, const Model& model, double seconds) {
 std::vector<Combination> all_combinations(const Model& model, double seconds) {
   std::vector<Combination> all;
   for (const auto& scheme : schemes()) {
-    for (const IntegratorEntry& integrator : integrators()) {
+    for (const IntegratorEntry& integrator : integrator_entries()) {
       all.push_back(
           {std::string(scheme->info().name), std::string(integrator.info.name), "", {}, {}, {}});
     }

@@ -101,7 +101,7 @@ void event_driven(Collector& all, bool closed_form) {
     add("event-driven rk4 step " + h, "rk4", all.h() / parts, 0.0);
   }
   for (const char* integrator : {"dopri5", "gsl-rk8pd", "cvode-adams"}) {
-    const auto known = integrators();
+    const auto known = integrator_entries();
     if (std::none_of(known.begin(), known.end(),
                      [&](const IntegratorEntry& e) { return e.info.name == integrator; })) {
       continue;

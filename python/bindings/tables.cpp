@@ -78,7 +78,7 @@ py::dict plug_ins() {
   }
   add_named(dict, "scheme", names);
   names = {"auto"};
-  for (const IntegratorEntry& entry : integrators()) {
+  for (const IntegratorEntry& entry : integrator_entries()) {
     names.push_back(entry.info.name);
   }
   add_named(dict, "integrator", names);

@@ -19,7 +19,7 @@ void add_names(JsonWriter& json) {
   json.close();
   json.open("integrator");
   json.text("auto", "closed form where the scene allows it, a Runge-Kutta method otherwise");
-  for (const IntegratorEntry& entry : integrators()) {
+  for (const IntegratorEntry& entry : integrator_entries()) {
     json.text(entry.info.name, entry.info.source);
   }
   json.close();

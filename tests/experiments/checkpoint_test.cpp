@@ -141,7 +141,7 @@ std::vector<Case> cases() {
 TEST_CASE("every scheme and integrator goes on from a checkpoint as if nothing had been",
           "[checkpoint]") {
   std::vector<std::string> names{"auto"};
-  for (const IntegratorEntry& entry : integrators()) {
+  for (const IntegratorEntry& entry : integrator_entries()) {
     names.emplace_back(entry.info.name);
   }
   Random random(20261121);

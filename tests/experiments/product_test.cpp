@@ -22,7 +22,7 @@ namespace {
 
 std::vector<std::string> integrator_names() {
   std::vector<std::string> names{"auto"};
-  for (const IntegratorEntry& entry : integrators()) {
+  for (const IntegratorEntry& entry : integrator_entries()) {
     names.emplace_back(entry.info.name);
   }
   return names;

@@ -176,7 +176,7 @@ TEST_CASE("every key that is cited somewhere in the tree is in the bibliography"
   for (const auto& scheme : kairos::schemes()) {
     cited.insert(std::string(scheme->info().source));
   }
-  for (const kairos::IntegratorEntry& integrator : kairos::integrators()) {
+  for (const kairos::IntegratorEntry& integrator : kairos::integrator_entries()) {
     cited.insert(std::string(integrator.info.source));
   }
   for (const std::string& key : cited) {

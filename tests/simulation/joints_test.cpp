@@ -169,7 +169,7 @@ TEST_CASE("joints: the energy of a pendulum drifts as the order of the stepper s
 TEST_CASE("joints: every stepper keeps a pendulum on its rod, or says why not", "[joints]") {
   const Model model(read_scene(find_scene("double-pendulum")));
   int ran = 0;
-  for (const IntegratorEntry& entry : simulation::integrators()) {
+  for (const IntegratorEntry& entry : simulation::integrator_entries()) {
     CAPTURE(entry.info.name);
     RunChoice choice;
     choice.method.integrator = std::string(entry.info.name);

@@ -19,7 +19,7 @@ TEST_CASE("pad: under every scheme every stepper of order 2 and more flies its p
     if (!scheme->info().integrator.empty()) {
       continue;  // takes no stepper
     }
-    for (const IntegratorEntry& integrator : integrators()) {
+    for (const IntegratorEntry& integrator : integrator_entries()) {
       if (integrator.info.position_order == 1) {
         continue;  // the Euler methods gain or lose energy on a parabola
       }

@@ -92,7 +92,7 @@ TEST_CASE("reference: quadratic drag, every bounce, with every controlled steppe
           "[reference]") {
   const Scene scene = shipped("drag-drop", {{"duration", "1.9"}});
   std::size_t steppers = 0;
-  for (const IntegratorEntry& entry : integrators()) {
+  for (const IntegratorEntry& entry : integrator_entries()) {
     if (!entry.info.controlled) {
       continue;
     }
@@ -116,7 +116,7 @@ TEST_CASE("reference: quadratic drag, every bounce, with every controlled steppe
 TEST_CASE("reference: steps may be asked for far beyond what a tight tolerance allows",
           "[reference]") {
   const Scene scene = shipped("stroke");
-  for (const IntegratorEntry& entry : integrators()) {
+  for (const IntegratorEntry& entry : integrator_entries()) {
     if (!entry.info.controlled || entry.info.order < 5) {
       continue;  // lower orders take 1e6 steps
     }

@@ -57,7 +57,7 @@ TEST_CASE("every entry of the registry is found under the name it gives itself",
     CHECK(find_impact_law(law->info().name) == law);
   }
   const Model model(drop());
-  for (const IntegratorEntry& entry : integrators()) {
+  for (const IntegratorEntry& entry : integrator_entries()) {
     CHECK(find_integrator(entry.info.name)(model, 0)->info().name == entry.info.name);
   }
   for (const std::string_view name : broad_phases()) {
