@@ -173,12 +173,6 @@ test("a rally of 20 strokes by the pointer: event-driven passes 0, original some
   assert.match(await p.textContent("#play-said"), /let the ball through at/);
   await p.click("#play-back");
   await p.waitForFunction((were) => window.game.rally.count > were, frames);
-  // What is saved: the scene, the tracks of bat and hand, the frame times.
-  const files = [];
-  p.on("download", (download) => files.push(download.suggestedFilename()));
-  await p.click("#play-save");
-  for (let i = 0; i < 100 && files.length < 4; ++i) await p.waitForTimeout(50);
-  assert.deepEqual(files.sort(), ["rally-bat.csv", "rally-frames.csv", "rally-hand.csv", "rally.toml"]);
   // The rally as a scene, of which the program's reader makes the same.
   await p.click("#play-open");
   await p.waitForFunction(() => window.studio.viewer.runs[0].title === "Table tennis" && window.studio.viewer.runs[0].end > 5 && window.studio.client.busy() === 0);
