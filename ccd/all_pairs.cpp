@@ -17,6 +17,11 @@ class AllPairs final : public BroadPhase {
     }
   }
 
+  void overlapping(const Aabb&, std::vector<BodyIndex>& out) const override {
+    candidates(registered_.size(), out);
+  }
+  void remove(BodyIndex body) override { registered_[body] = false; }
+
  private:
   std::vector<bool> registered_;
 };

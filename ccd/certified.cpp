@@ -1,6 +1,7 @@
 #include "ccd/certified.hpp"
 
 #include "ccd/advancement.hpp"
+#include "ccd/ball_filter.hpp"
 #include "ccd/closed_form.hpp"
 #include "ccd/shape_detector.hpp"
 
@@ -14,6 +15,11 @@ class Certified final : public ShapeDetector {
             .locates = true,
             .proves = true,
             .summary = "closed forms and advancement, ending in a proven bracket"};
+  }
+
+  void clear_times(const BallFlight& one, std::span<const BallFlight> others, double tolerance,
+                   std::span<double> clear) const override {
+    filter_balls(one, others, tolerance, clear);
   }
 
  private:

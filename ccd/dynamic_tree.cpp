@@ -40,13 +40,9 @@ class DynamicTree final : public BroadPhase {
   [[nodiscard]] std::string_view name() const override { return "dynamic-tree"; }
 
   void update(BodyIndex body, const Aabb& swept) override {
-    if (leaf_[body] != none) {
-      remove(leaf_[body]);
-      leaf_[body] = none;
-    }
+    remove(body);
     boxes_[body] = swept;
     known_[body] = true;
-    std::erase(unbounded_, body);
     if (swept.lower.allFinite() && swept.upper.allFinite()) {
       leaf_[body] = insert(body, swept);
     } else {
@@ -59,22 +55,40 @@ class DynamicTree final : public BroadPhase {
       return;
     }
     const auto begin = static_cast<std::ptrdiff_t>(out.size());
-    collect(root_, body, out);
-    for (const BodyIndex other : unbounded_) {
-      if (other != body && boxes_[other].overlaps(boxes_[body])) {
-        out.push_back(other);
-      }
-    }
+    collect(boxes_[body], body, out);
     std::sort(out.begin() + begin, out.end());
+  }
+
+  void overlapping(const Aabb& box, std::vector<BodyIndex>& out) const override {
+    collect(box, boxes_.size(), out);
+  }
+
+  void remove(BodyIndex body) override {
+    if (leaf_[body] != none) {
+      take_out(leaf_[body]);
+      leaf_[body] = none;
+    } else if (known_[body]) {
+      std::erase(unbounded_, body);
+    }
+    known_[body] = false;
   }
 
  private:
   Node& at(NodeIndex i) { return nodes_[static_cast<std::size_t>(i)]; }
   const Node& at(NodeIndex i) const { return nodes_[static_cast<std::size_t>(i)]; }
 
+  void collect(const Aabb& box, BodyIndex body, std::vector<BodyIndex>& out) const {
+    collect(root_, box, body, out);
+    for (const BodyIndex other : unbounded_) {
+      if (other != body && boxes_[other].overlaps(box)) {
+        out.push_back(other);
+      }
+    }
+  }
+
   /// Depth is the logarithm of the number of bodies: rotations keep the tree balanced.
-  void collect(NodeIndex i, BodyIndex body, std::vector<BodyIndex>& out) const {
-    if (i == none || !at(i).box.overlaps(boxes_[body])) {
+  void collect(NodeIndex i, const Aabb& box, BodyIndex body, std::vector<BodyIndex>& out) const {
+    if (i == none || !at(i).box.overlaps(box)) {
       return;
     }
     if (at(i).leaf()) {
@@ -83,8 +97,8 @@ class DynamicTree final : public BroadPhase {
       }
       return;
     }
-    collect(at(i).left, body, out);
-    collect(at(i).right, body, out);
+    collect(at(i).left, box, body, out);
+    collect(at(i).right, box, body, out);
   }
 
   NodeIndex allocate() {
@@ -143,7 +157,7 @@ class DynamicTree final : public BroadPhase {
     return leaf;
   }
 
-  void remove(NodeIndex leaf) {
+  void take_out(NodeIndex leaf) {
     const NodeIndex parent = at(leaf).parent;
     if (parent == none) {
       root_ = none;

@@ -19,7 +19,7 @@ class SweepAndPrune final : public BroadPhase {
   void update(BodyIndex body, const Aabb& swept) override {
     const bool bounded = std::isfinite(swept.lower.x()) && std::isfinite(swept.upper.x());
     if (place_[body] == unbounded || (place_[body] != absent && !bounded)) {
-      remove(body);
+      take_out(body);
     }
     boxes_[body] = swept;
     if (!bounded) {
@@ -47,7 +47,23 @@ class SweepAndPrune final : public BroadPhase {
       return;
     }
     const auto begin = static_cast<std::ptrdiff_t>(out.size());
-    const Aabb& box = boxes_[body];
+    collect(boxes_[body], body, out);
+    std::sort(out.begin() + begin, out.end());
+  }
+  void overlapping(const Aabb& box, std::vector<BodyIndex>& out) const override {
+    collect(box, place_.size(), out);
+  }
+  void remove(BodyIndex body) override {
+    if (place_[body] != absent) {
+      take_out(body);
+    }
+  }
+
+ private:
+  static constexpr std::size_t absent = static_cast<std::size_t>(-1);
+  static constexpr std::size_t unbounded = static_cast<std::size_t>(-2);
+
+  void collect(const Aabb& box, BodyIndex body, std::vector<BodyIndex>& out) const {
     // A box that starts further left than the widest is wide cannot reach this one.
     const auto first = std::partition_point(order_.begin(), order_.end(), [&](BodyIndex other) {
       return boxes_[other].lower.x() + widest_ * (1.0 + 1e-9) < box.lower.x();
@@ -62,12 +78,7 @@ class SweepAndPrune final : public BroadPhase {
         out.push_back(other);
       }
     }
-    std::sort(out.begin() + begin, out.end());
   }
-
- private:
-  static constexpr std::size_t absent = static_cast<std::size_t>(-1);
-  static constexpr std::size_t unbounded = static_cast<std::size_t>(-2);
 
   bool before(std::size_t i, std::size_t j) const {
     return boxes_[order_[i]].lower.x() < boxes_[order_[j]].lower.x();
@@ -86,7 +97,7 @@ class SweepAndPrune final : public BroadPhase {
       exchange(i, i + 1);
     }
   }
-  void remove(BodyIndex body) {
+  void take_out(BodyIndex body) {
     if (place_[body] == unbounded) {
       unbounded_.erase(std::find(unbounded_.begin(), unbounded_.end(), body));
     } else {

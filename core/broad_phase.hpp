@@ -33,6 +33,10 @@ class BroadPhase {
   /// Appends every registered body, other than `body`, whose box could overlap that of `body`.
   /// Order: ascending index, so that runs do not depend on how boxes are stored.
   virtual void candidates(BodyIndex body, std::vector<BodyIndex>& out) const = 0;
+  /// The same of a box that is nobody's; in any order.
+  virtual void overlapping(const Aabb& box, std::vector<BodyIndex>& out) const = 0;
+  /// Forgets a body, if it is registered.
+  virtual void remove(BodyIndex body) = 0;
 };
 
 }  // namespace core

@@ -1,5 +1,7 @@
 #include "core/contact_detector.hpp"
 
+#include <algorithm>
+
 namespace kairos {
 inline namespace core {
 
@@ -12,6 +14,11 @@ ContactManifold ContactDetector::manifold(const Shape& a, const Pose& pose_a, co
     manifold.add(o.point, o.gap);
   }
   return manifold;
+}
+
+void ContactDetector::clear_times(const BallFlight& /*one*/, std::span<const BallFlight> /*others*/,
+                                  double /*tolerance*/, std::span<double> clear) const {
+  std::fill(clear.begin(), clear.end(), 0.0);
 }
 
 }  // namespace core

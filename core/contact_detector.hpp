@@ -5,6 +5,7 @@
 #include "core/shape.hpp"
 #include "core/time_of_impact.hpp"
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -21,6 +22,15 @@ struct MovingShape {
 struct Window {
   Instant start;          ///< within both motions
   double duration = 0.0;  ///< s, >= 0; within both motions; may be infinite where both are
+};
+
+/// A ball on a parabola: its motion as far as it matters, where many are asked about.
+struct BallFlight {
+  Vector3 position = Vector3::Zero();      ///< at `start`, m
+  Vector3 velocity = Vector3::Zero();      ///< at `start`, m/s
+  Vector3 acceleration = Vector3::Zero();  ///< m/s^2
+  Instant start;
+  double radius = 0.0;  ///< error radius included, m
 };
 
 struct DetectorInfo {
@@ -55,6 +65,11 @@ class ContactDetector {
   [[nodiscard]] virtual TimeOfImpact time_of_impact(const MovingShape& a, const MovingShape& b,
                                                     const Window& window,
                                                     double tolerance) const = 0;
+  /// How long after the later of their starts `one` is clear of each of the `others`: before that
+  /// `time_of_impact`, with the same tolerance, tells no contact; infinite: never. Bounds from
+  /// below, s, not for the bits of any answer; the default knows nothing and says 0.
+  virtual void clear_times(const BallFlight& one, std::span<const BallFlight> others,
+                           double tolerance, std::span<double> clear) const;
   /// Two shapes that overlap at the start: when do they part? `impact` brackets the parting
   /// (still overlapping, or touching within tolerance, at t_lo; apart at t_hi); `overlapping`:
   /// not within the window; `separated`: apart at the start already. For fields.

@@ -4,6 +4,7 @@
 #include "core/checkpoint.hpp"
 #include "core/contact_detector.hpp"
 #include "core/impact_law.hpp"
+#include "core/neighbourhood.hpp"
 #include "core/recorder.hpp"
 #include "core/stepper.hpp"
 #include "core/time_stepping_options.hpp"
@@ -29,7 +30,8 @@ struct Method {
   std::shared_ptr<const ContactDetector> detector;
   std::shared_ptr<const ImpactLaw> law;
   BroadPhaseFactory broad_phase;
-  SweptBounds swept_bounds;  ///< what a broad phase is told
+  SweptBounds swept_bounds;                 ///< what a broad phase is told
+  NeighbourhoodFactory neighbourhood = {};  ///< the same where each body has a time of its own
 };
 
 struct SchemeOptions {

@@ -8,6 +8,7 @@
 
 #include "ccd/all_pairs.hpp"
 #include "ccd/bisection.hpp"
+#include "ccd/cells.hpp"
 #include "ccd/certified.hpp"
 #include "ccd/conservative_advancement.hpp"
 #include "ccd/dynamic_tree.hpp"
@@ -15,6 +16,7 @@
 #include "ccd/step_ends.hpp"
 #include "ccd/sweep_and_prune.hpp"
 #include "ccd/swept_box.hpp"
+#include "ccd/swept_windows.hpp"
 #include "core/error.hpp"
 #include "core/laws/newton_law.hpp"
 #include "core/laws/routh_law.hpp"
@@ -70,10 +72,12 @@ std::shared_ptr<const Port> find(std::string_view port, std::string_view name,
 constexpr std::string_view rootfinding_integrator = "cvode-adams";
 
 using NamedBroadPhase = std::pair<std::string_view, std::unique_ptr<BroadPhase> (*)(std::size_t)>;
-constexpr std::array<NamedBroadPhase, 3> broad_phase_catalogue{
+/// Cells hold bodies on the motions that they have; of boxes a tree does as well.
+constexpr std::array<NamedBroadPhase, 4> broad_phase_catalogue{
     {{"all-pairs", ccd::make_all_pairs},
      {"sweep-and-prune", ccd::make_sweep_and_prune},
-     {"dynamic-tree", ccd::make_dynamic_tree}}};
+     {"dynamic-tree", ccd::make_dynamic_tree},
+     {"cells", ccd::make_dynamic_tree}}};
 
 bool has_integrator(std::string_view name) {
   const auto all = integrator_entries();
@@ -180,6 +184,15 @@ BroadPhaseFactory find_broad_phase(std::string_view name) {
     }
   }
   unknown("broad phase", name, broad_phases());
+}
+
+NeighbourhoodFactory find_neighbourhood(std::string_view name) {
+  if (name == "cells") {
+    return ccd::make_cells;
+  }
+  return [boxes = find_broad_phase(name)](const Model& model, double tolerance) {
+    return std::make_unique<ccd::SweptWindows>(model, boxes(model.size()), tolerance);
+  };
 }
 
 SweptBounds swept_bounds() {

@@ -39,6 +39,9 @@ struct IntegratorEntry {
 [[nodiscard]] IslandStepper find_watching_integrator(std::string_view name,
                                                      const StepperOptions& options = {});
 [[nodiscard]] BroadPhaseFactory find_broad_phase(std::string_view name);
+/// The same for bodies that each move from a time of their own; a broad phase of boxes then has
+/// windows.
+[[nodiscard]] NeighbourhoodFactory find_neighbourhood(std::string_view name);
 /// What a broad phase is told of a moving shape.
 [[nodiscard]] SweptBounds swept_bounds();
 

@@ -90,7 +90,8 @@ Plan make_plan(const Model& model, const RunChoice& choice, const PlugIns& own) 
   Plan plan{own.scheme ? own.scheme : find_scheme(choice.method.scheme),
             {own.integrator ? own.integrator : integrator(choice.method.integrator, choice.stepper),
              detector, own.impact ? own.impact : find_impact_law(choice.method.impact),
-             find_broad_phase(model.broad_phase()), swept_bounds()},
+             find_broad_phase(model.broad_phase()), swept_bounds(),
+             find_neighbourhood(model.broad_phase())},
             scheme_options(model.scene(), choice),
             own.integrator ? "own" : choice.method.integrator};
   if (choice.cold_restarts) {

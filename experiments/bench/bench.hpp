@@ -36,6 +36,9 @@ void bench_stepping(int rounds);
 void bench_queries(std::size_t pairs, int rounds);
 /// Vertex and face, edge and edge on straight lines: mean, median and the share of every stage.
 void bench_vfee(std::size_t queries, int rounds);
+/// A gas of so many balls each: impacts a second, queries an impact, memory a ball (scene and model
+/// included; of the largest yet, so counts go up), under cells and, where it ends, a tree.
+void bench_gas(std::vector<std::size_t> counts, int rounds);
 /// Meshes at rest: two tori in many placements, touching, distance, tolerance; a tree's time and
 /// size.
 void bench_meshes(int rounds);

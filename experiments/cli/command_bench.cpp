@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace kairos::experiments {
 
@@ -18,6 +19,7 @@ struct BenchCommand {
   std::string name;
   int rounds = 3;
   std::size_t pairs = std::size_t{1} << 18;  // more than a branch predictor learns
+  std::vector<std::size_t> balls{64, 512, 4096};
   AccuracyOptions accuracy;
 
   void run() const {
@@ -26,6 +28,10 @@ struct BenchCommand {
       if (broken > 0) {
         throw RunError(fmt::format("{} answers break a promise", broken));
       }
+      return;
+    }
+    if (name == "gas") {
+      bench_gas(balls, rounds);
       return;
     }
     if (name == "vfee") {
@@ -53,15 +59,19 @@ void add_bench_command(CLI::App& app) {
       "bench", "Time it: ratios within one run, interleaved, the least of several rounds");
   bench
       ->add_option("name", options->name,
-                   "bounce, ccd, vfee or meshes: times; without it the first two; accuracy: "
+                   "bounce, ccd, vfee, meshes or gas: times; without it the first two; accuracy: "
                    "answers against a "
                    "reference")
-      ->check(CLI::IsMember({"bounce", "ccd", "vfee", "meshes", "accuracy"}));
+      ->check(CLI::IsMember({"bounce", "ccd", "vfee", "meshes", "gas", "accuracy"}));
   bench->add_option("--rounds", options->rounds, "how often each is timed")
       ->check(whole_number(1, 1000))
       ->capture_default_str();
   bench->add_option("--pairs", options->pairs, "ccd, vfee: how many distinct pairs")
       ->check(whole_number(1, 1 << 22))
+      ->capture_default_str();
+  bench->add_option("--balls", options->balls, "gas: how many, one gas for each number")
+      ->check(whole_number(2, 10'000'000))
+      ->type_name("N...")
       ->capture_default_str();
   AccuracyOptions& accuracy = options->accuracy;
   bench->add_option("--queries", accuracy.queries, "accuracy: how many")

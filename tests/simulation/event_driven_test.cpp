@@ -297,7 +297,8 @@ TEST_CASE("event-driven: a detector that never gets on is an accumulation, not a
                       .detector = std::make_shared<Hesitant>(),
                       .law = find_impact_law("newton"),
                       .broad_phase = find_broad_phase(model.broad_phase()),
-                      .swept_bounds = swept_bounds()};
+                      .swept_bounds = swept_bounds(),
+                      .neighbourhood = find_neighbourhood(model.broad_phase())};
   Trajectory trajectory;
   const RunResult result =
       find_scheme("event-driven")

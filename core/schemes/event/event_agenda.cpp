@@ -9,7 +9,11 @@ namespace kairos {
 inline namespace core {
 
 Agenda::Agenda(const Model& model)
-    : by_name_(model.size()), rank_(model.size()), version_(model.size(), 0) {
+    : by_name_(model.size()),
+      rank_(model.size()),
+      version_(model.size(), 0),
+      records_(model.size()),
+      calendar_(model.size()) {
   std::iota(by_name_.begin(), by_name_.end(), BodyIndex{0});
   std::sort(by_name_.begin(), by_name_.end(),
             [&](BodyIndex a, BodyIndex b) { return model.body(a).name < model.body(b).name; });
@@ -26,7 +30,72 @@ void Agenda::push(Instant t, Due due, BodyIndex a, BodyIndex b, double patience,
   std::push_heap(heap_.begin(), heap_.end(), later);
 }
 
+void Agenda::meet(BodyIndex i, BodyIndex b, Instant t, double patience) {
+  Record& record = records_[i];
+  const bool known = record.version == version_[i] && record.meeting <= t;
+  if (known && (record.meeting < t || ranks(i, record.partner) < ranks(i, rank_[b]))) {
+    return;
+  }
+  record.meeting = t;
+  record.patience = patience;
+  record.partner = rank_[b];
+  record.version = version_[i];
+  record.partner_version = version_[b];
+}
+
+Instant Agenda::meeting(BodyIndex i) const {
+  const Record& record = records_[i];
+  const bool known =
+      record.version == version_[i] && record.partner_version == version_[by_name_[record.partner]];
+  return known ? record.meeting : Instant::never();
+}
+
+void Agenda::file(BodyIndex i) {
+  Record& record = records_[i];
+  record.filed = true;
+  if (record.version != version_[i]) {
+    record.meeting = Instant::never();
+  }
+  EventCalendar::Entry entry;
+  entry.body = static_cast<std::uint32_t>(i);
+  const bool crosses = record.crossing <= record.meeting;
+  const auto [a, b] = crosses ? std::pair{rank_[i], rank_[i]} : ranks(i, record.partner);
+  const Due due = crosses ? Due::horizon : Due::impact;
+  entry.time = std::min(record.crossing, record.meeting);
+  entry.key = static_cast<std::uint64_t>(due) << 32U | a;
+  entry.key2 = b;
+  calendar_.put(entry);
+}
+
+DueEvent Agenda::pop_record(const EventCalendar::Entry& first) {
+  const BodyIndex i = first.body;
+  Record& record = records_[i];
+  DueEvent event{.time = first.time, .a = i, .b = i, .own = true, .owner = i};
+  calendar_.drop(first.body);
+  record.filed = false;
+  if (record.crossing <= record.meeting) {
+    event.due = Due::horizon;
+    record.crossing = Instant::never();
+    return event;
+  }
+  const auto [a, b] = ranks(i, record.partner);
+  event.due = Due::impact;
+  event.a = by_name_[a];
+  event.b = by_name_[b];
+  event.patience = record.patience;
+  event.stale = meeting(i) == Instant::never();
+  record.meeting = Instant::never();
+  return event;
+}
+
 DueEvent Agenda::pop() {
+  if (const EventCalendar::Entry* const first = calendar_.first(); first != nullptr) {
+    const auto key =
+        std::tuple(first->time.seconds, first->time.correction, first->key, first->key2);
+    if (heap_.empty() || key < heap_.front().full_key()) {
+      return pop_record(*first);
+    }
+  }
   std::pop_heap(heap_.begin(), heap_.end(), later);
   const Entry entry = heap_.back();
   heap_.pop_back();
@@ -49,8 +118,18 @@ void Agenda::Entry::persist(Archive& archive) {
   archive(time, due, a, b, version_a, version_b, patience, decided);
 }
 
+void Agenda::Record::persist(Archive& archive) {
+  archive(meeting, crossing, patience, partner, version, partner_version);
+}
+
 void Agenda::persist(Archive& archive) {
-  archive(version_, heap_, crowded_);
+  archive(version_, heap_, crowded_, records_);
+  for (BodyIndex i = 0; i < records_.size(); ++i) {
+    archive.require(records_[i].partner < by_name_.size());
+    if (archive.reading()) {
+      file(i);
+    }
+  }
   for (const Entry& entry : heap_) {
     archive.require(entry.a < by_name_.size() && entry.b < by_name_.size());
   }

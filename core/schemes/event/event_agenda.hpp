@@ -1,9 +1,12 @@
 #pragma once
 
 #include "core/model.hpp"
+#include "core/schemes/event/event_calendar.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace kairos {
@@ -21,7 +24,7 @@ enum class Due : std::uint8_t {
   field_entered,   ///< between `a` and `b`
   field_left,
   clear_of_hand,  ///< what a hand has let go of is clear of it
-  horizon,        ///< pairs of `a` have been predicted up to here
+  horizon,        ///< `a` comes near others
   recheck,        ///< ask the detector again
   stays,          ///< two solids touch, and would go on to do so
   impact,
@@ -37,23 +40,42 @@ struct DueEvent {
   double patience = 0.0;  ///< impact: t_hi - t_lo, s
   bool decided = true;    ///< impact: contact by t_hi is proven
   bool stale = false;     ///< one of the two has moved otherwise since it was predicted
+  bool own = false;       ///< the earliest meeting of `owner`: it knows of no later one
+  BodyIndex owner = 0;
 };
 
-/// What is due, earliest first: a binary heap. Bodies go by their rank in alphabetical order, so
-/// that neither the order of simultaneous events nor any query depends on the order in which a file
-/// lists them.
+/// What is due, earliest first. Bodies go by their rank in alphabetical order, so that neither the
+/// order of simultaneous events nor any query depends on the order in which a file lists them.
+///
+/// What is predicted lies in a binary heap until it comes up. Bodies that are cheap to ask about
+/// have one record each instead, of their earliest meeting and of when they come near others: when
+/// a record comes up and is stale, its body is asked about again.
 class Agenda {
  public:
   explicit Agenda(const Model& model);
 
-  [[nodiscard]] bool due_before(Instant t) const {
-    return !heap_.empty() && heap_.front().time < t;
+  [[nodiscard]] bool due_before(Instant t) {
+    const EventCalendar::Entry* const first = calendar_.first();
+    return (!heap_.empty() && heap_.front().time < t) || (first != nullptr && first->time < t);
   }
   void push(Instant t, Due due, BodyIndex a, BodyIndex b, double patience = 0.0,
             bool decided = true);
   [[nodiscard]] DueEvent pop();
   /// Body i has a new motion: all that was predicted of it is stale. Recognised when it comes up.
   void renew(BodyIndex i) { ++version_[i]; }
+
+  /// Body i meets b then; kept if it is the earliest that is known of i.
+  void meet(BodyIndex i, BodyIndex b, Instant t, double patience);
+  /// The earliest meeting of i that is known, if nobody has moved otherwise; never: none is.
+  [[nodiscard]] Instant meeting(BodyIndex i) const;
+  /// Nothing is known of i's meetings.
+  void forget_meeting(BodyIndex i) { records_[i].meeting = Instant::never(); }
+  void cross(BodyIndex i, Instant t) { records_[i].crossing = t; }
+  /// After changes of i's record. What comes up of it is not filed any more.
+  void file(BodyIndex i);
+  [[nodiscard]] bool is_filed(BodyIndex i) const { return records_[i].filed; }
+  /// How often body i has got a new motion.
+  [[nodiscard]] std::uint32_t version(BodyIndex i) const { return version_[i]; }
 
   /// Bodies in the order of their names.
   [[nodiscard]] const std::vector<BodyIndex>& by_name() const { return by_name_; }
@@ -81,12 +103,35 @@ class Agenda {
     bool decided = true;
 
     void persist(Archive& archive);
+    /// As that of an entry of the calendar.
+    [[nodiscard]] auto full_key() const {
+      const std::uint64_t first = static_cast<std::uint64_t>(due) << 32U | a;
+      return std::tuple(time.seconds, time.correction, first, std::uint64_t{b});
+    }
     [[nodiscard]] auto key() const { return std::tuple(time.seconds, time.correction, due, a, b); }
   };
   [[nodiscard]] bool stale(const Entry& entry) const {
     return entry.version_a != version_[by_name_[entry.a]] ||
            entry.version_b != version_[by_name_[entry.b]];
   }
+
+  /// What is known of a body without the heap.
+  struct Record {
+    Instant meeting = Instant::never();
+    Instant crossing = Instant::never();
+    double patience = 0.0;
+    std::uint32_t partner = 0;  ///< ranks and versions as in `Entry`
+    std::uint32_t version = 0;
+    std::uint32_t partner_version = 0;
+    bool filed = false;
+
+    void persist(Archive& archive);
+  };
+  [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> ranks(BodyIndex i,
+                                                              std::uint32_t other) const {
+    return std::minmax(rank_[i], other);
+  }
+  [[nodiscard]] DueEvent pop_record(const EventCalendar::Entry& first);
 
   void sweep_out();
   static bool later(const Entry& x, const Entry& y) { return x.key() > y.key(); }
@@ -95,6 +140,8 @@ class Agenda {
   std::vector<std::uint32_t> rank_;
   std::vector<std::uint32_t> version_;
   std::vector<Entry> heap_;
+  std::vector<Record> records_;
+  EventCalendar calendar_;
   std::size_t crowded_ = least_crowded;  ///< size at which stale entries are swept out
 };
 

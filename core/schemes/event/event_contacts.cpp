@@ -385,6 +385,9 @@ void EventContacts::carry_riders(BodyIndex surface, Instant t) {
       settle_anew(i, t);
     }
   }
+  if (motions_.riders(surface) == 0) {
+    return;
+  }
   for (const BodyIndex i : run_.agenda.by_name()) {
     if (motions_.is_supported_by(i, surface)) {
       motions_.book(i, t);

@@ -14,6 +14,9 @@ inline namespace core {
 EventMotions::EventMotions(EventRun& run, const Method& method)
     : run_(run),
       bodies_(run.model.size()),
+      riders_(run.model.size(), 0),
+      flights_(run.model.size()),
+      flies_(run.model.size(), 0),
       now_(run.model.initial_state()),
       booked_(now_),
       field_forces_(run.model.size(), Vector3::Zero()) {
@@ -121,7 +124,7 @@ void EventMotions::hold(BodyIndex i, Instant t, const Motion& motion) {
 void EventMotions::hold(BodyIndex i, Instant t, const Twist& acceleration) {
   Flow& flow = flow_of(i);
   flow.held = true;
-  bodies_[i].support.reset();
+  set_support(i, std::nullopt);
   bodies_[i].rubs.clear();
   set_forces(flow);
   flow.island.constant_force[0] = run_.model.inertia(i).mass * acceleration.linear;
@@ -203,10 +206,37 @@ void EventMotions::drive(BodyIndex i, Instant t) {
 
 void EventMotions::set_motion(BodyIndex i, const Motion& motion) {
   bodies_[i].motion = motion;
+  set_flight(i);
   run_.agenda.renew(i);
   if (run_.wants_motions) {
     run_.recorder.motion(i, motion);
   }
+}
+
+void EventMotions::set_support(BodyIndex i, const std::optional<Support>& support) {
+  if (const auto& before = bodies_[i].support) {
+    --riders_[before->surface];
+  }
+  if (support) {
+    ++riders_[support->surface];
+  }
+  bodies_[i].support = support;
+}
+
+void EventMotions::set_flight(BodyIndex i) {
+  const MovingBody& body = bodies_[i];
+  const Motion& motion = body.motion;
+  const auto* ball = std::get_if<Sphere>(&run_.model.shape(i));
+  flies_[i] = static_cast<char>(ball != nullptr && run_.model.is_free(i) && !body.support &&
+                                motion.position.degree() <= 2 && std::isinf(motion.duration));
+  if (flies_[i] == 0) {
+    return;
+  }
+  const auto coefficient = [&](int k) {
+    return k <= motion.position.degree() ? Vector3(motion.position[k]) : Vector3(Vector3::Zero());
+  };
+  flights_[i] = {coefficient(0), coefficient(1), 2.0 * coefficient(2), motion.start,
+                 ball->radius + motion.error_radius};
 }
 
 /// A supported ball rides on its surface until its face ends or draws away.
@@ -487,8 +517,17 @@ void EventMotions::persist(Archive& archive) {
     }
   }
   archive(now_, booked_, field_forces_, bodies_);
+  std::fill(riders_.begin(), riders_.end(), 0U);
+  if (archive.reading()) {
+    for (BodyIndex i = 0; i < bodies_.size(); ++i) {
+      set_flight(i);
+    }
+  }
   for (const MovingBody& body : bodies_) {
     archive.require(!body.support || body.support->surface < bodies_.size());
+    if (body.support) {
+      ++riders_[body.support->surface];
+    }
     for (const BodyIndex field : body.fields) {
       archive.require(field < bodies_.size());
     }

@@ -3,6 +3,7 @@
 #include "core/schemes/event/event_run.hpp"
 #include "core/schemes/shared/support.hpp"
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -26,6 +27,9 @@ class EventMotions {
   [[nodiscard]] MovingShape moving(BodyIndex i) const {
     return {run_.model.shape(i), bodies_[i].motion};
   }
+  /// Whether i is a ball on a parabola until it is launched again, and held by nothing.
+  [[nodiscard]] bool flies(BodyIndex i) const { return flies_[i] != 0; }
+  [[nodiscard]] const BallFlight& flight(BodyIndex i) const { return flights_[i]; }
   [[nodiscard]] BodyState at(BodyIndex i, Instant t) const;
   /// States of the event at hand, by body: an event brings here what it looks at, changes it, and
   /// launches from it. Of no meaning otherwise, except of what is fixed.
@@ -90,9 +94,9 @@ class EventMotions {
     return bodies_[i].support;
   }
   /// Takes effect with the next launch.
-  void set_support(BodyIndex i, const std::optional<Support>& support) {
-    bodies_[i].support = support;
-  }
+  void set_support(BodyIndex i, const std::optional<Support>& support);
+  /// How many balls a surface supports.
+  [[nodiscard]] std::uint32_t riders(BodyIndex surface) const { return riders_[surface]; }
   [[nodiscard]] bool is_supported_by(BodyIndex ball, BodyIndex surface) const {
     return bodies_[ball].support && bodies_[ball].support->surface == surface;
   }
@@ -153,6 +157,7 @@ class EventMotions {
   void next_segment(Flow& flow, Instant t);
   void drive(BodyIndex i, Instant t);
   void set_motion(BodyIndex i, const Motion& motion);
+  void set_flight(BodyIndex i);
   void hold(Flow& flow, Instant t);
   void set_forces(Flow& flow);
   [[nodiscard]] Vector3 field_forces_at(BodyIndex i) const;
@@ -168,6 +173,9 @@ class EventMotions {
 
   EventRun& run_;
   std::vector<MovingBody> bodies_;
+  std::vector<std::uint32_t> riders_;  ///< by surface
+  std::vector<BallFlight> flights_;    ///< of those that fly
+  std::vector<char> flies_;
   std::vector<Flow> flows_;
   State now_;
   State booked_;                       ///< where the ledger is

@@ -15,8 +15,7 @@ EventPredictor::EventPredictor(EventRun& run, const EventMotions& motions, const
                                const ContactGraph& graph, const Method& method)
     : run_(run), motions_(motions), grasps_(grasps), graph_(graph), bodies_(run.model.size()) {
   if (run.model.broad_phase() != "all-pairs") {
-    broad_phase_ = method.broad_phase(run.model.size());
-    swept_bounds_ = method.swept_bounds;
+    neighbourhood_ = method.neighbourhood(run.model, run.options.toi_tolerance);
     return;
   }
   for (const auto& [a, b] : run.model.pairs()) {
@@ -27,7 +26,7 @@ EventPredictor::EventPredictor(EventRun& run, const EventMotions& motions, const
 
 void EventPredictor::predict(BodyIndex i, Instant t, BodyIndex except) {
   bodies_[i].since = t;
-  if (!broad_phase_) {
+  if (!neighbourhood_) {
     for (const BodyIndex j : bodies_[i].partners) {
       if (j != except) {
         predict_near(i, j);
@@ -35,59 +34,108 @@ void EventPredictor::predict(BodyIndex i, Instant t, BodyIndex except) {
     }
     return;
   }
-  find_near(i, t);
-  for (const BodyIndex j : neighbours_) {
-    if (j != except && run_.model.interacts(i, j)) {
-      predict_near(i, j);
-    }
-  }
-}
-
-void EventPredictor::look_around(BodyIndex i, Instant t) {
-  find_near(i, t);
-  for (const BodyIndex j : neighbours_) {
-    if (run_.model.interacts(i, j)) {
-      predict_near(i, j, t);
-    }
-  }
-}
-
-/// The neighbours of i during its next window.
-void EventPredictor::find_near(BodyIndex i, Instant t) {
-  open_window(i, t);
+  enter(i, t);
   neighbours_.clear();
-  broad_phase_->candidates(i, neighbours_);
-  // Windows grow where few are near and shrink where many are: about ten neighbours cost least.
-  double& reach = bodies_[i].reach;
-  if (neighbours_.size() > 16) {
-    reach *= 0.5;
-  } else if (neighbours_.size() < 8) {
-    reach *= 1.5;
-  }
+  neighbourhood_->near(i, neighbours_);
+  std::erase(neighbours_, except);
+  survey(i, before_all);
+  run_.agenda.file(i);
+}
+
+void EventPredictor::cross(BodyIndex i, Instant t) {
+  neighbours_.clear();
+  run_.agenda.cross(i, neighbourhood_->cross(i, motions_.moving(i), t, last_of(i), neighbours_));
+  survey(i, t);
+  run_.agenda.file(i);
+}
+
+void EventPredictor::renew(BodyIndex i, Instant t) {
+  neighbours_.clear();
+  neighbourhood_->near(i, neighbours_);
+  survey(i, t);
+  run_.agenda.file(i);
+}
+
+void EventPredictor::enter(BodyIndex i, Instant t) {
+  run_.agenda.cross(i, neighbourhood_->enter(i, motions_.moving(i), t, last_of(i)));
 }
 
 void EventPredictor::predict_all(Instant t) {
   for (Watched& body : bodies_) {
     body.since = t;
   }
-  if (!broad_phase_) {
+  if (!neighbourhood_) {
     for (const auto& [a, b] : run_.model.pairs()) {
       predict_near(a, b);
     }
     return;
   }
   for (const BodyIndex i : run_.agenda.by_name()) {
-    open_window(i, t);
+    enter(i, t);
   }
   for (const BodyIndex i : run_.agenda.by_name()) {
     neighbours_.clear();
-    broad_phase_->candidates(i, neighbours_);
-    for (const BodyIndex j : neighbours_) {
-      if (i < j && run_.model.interacts(i, j)) {
-        predict_near(i, j);
-      }
+    neighbourhood_->near(i, neighbours_);
+    std::erase_if(neighbours_, [&](BodyIndex j) {
+      const bool mine = keeps_meeting(i, j);
+      return mine == keeps_meeting(j, i) ? j < i : !mine;
+    });
+    run_.agenda.forget_meeting(i);
+    survey(i, before_all);
+    run_.agenda.file(i);
+  }
+}
+
+/// Asks about i and all of `neighbours_`.
+void EventPredictor::survey(BodyIndex i, Instant known) {
+  balls_.clear();
+  for (const BodyIndex j : neighbours_) {
+    if (!run_.model.interacts(i, j)) {
+      continue;
+    }
+    if (motions_.flies(i) && motions_.flies(j)) {
+      balls_.push_back(j);
+    } else {
+      predict_near(i, j, known);
     }
   }
+  meet_balls(i, known);
+}
+
+/// Those first that i could meet first: of the others it need not know, as it is asked again when
+/// its earliest meeting comes up.
+void EventPredictor::meet_balls(BodyIndex i, Instant known) {
+  flights_.clear();
+  for (const BodyIndex j : balls_) {
+    flights_.push_back(motions_.flight(j));
+  }
+  clear_.resize(balls_.size());
+  const BallFlight& own = motions_.flight(i);
+  run_.detector.clear_times(own, flights_, run_.options.toi_tolerance, clear_);
+  near_.clear();
+  for (std::size_t k = 0; k < balls_.size(); ++k) {
+    if (clear_[k] < std::numeric_limits<double>::infinity()) {
+      near_.push_back({balls_[k], std::max(own.start, flights_[k].start) + clear_[k]});
+    }
+  }
+  while (!near_.empty()) {
+    const auto next = std::min_element(
+        near_.begin(), near_.end(), [](const Near& x, const Near& y) { return x.clear < y.clear; });
+    if (run_.agenda.meeting(i) < next->clear) {
+      return;
+    }
+    predict_near(i, next->body, known);
+    *next = near_.back();
+    near_.pop_back();
+  }
+}
+
+/// Whether i needs to know only of its earliest meeting, if that is one of these.
+bool EventPredictor::keeps_meeting(BodyIndex i, BodyIndex with) const {
+  return neighbourhood_ && motions_.flies(i) &&
+         (motions_.flies(with) ||
+          (run_.model.mobility(with) == Mobility::fixed && !run_.model.is_field(with) &&
+           std::holds_alternative<HalfSpace>(run_.model.shape(with))));
 }
 
 void EventPredictor::solids_near(BodyIndex i, std::vector<BodyIndex>& out) {
@@ -97,49 +145,13 @@ void EventPredictor::solids_near(BodyIndex i, std::vector<BodyIndex>& out) {
       out.push_back(j);
     }
   };
-  if (!broad_phase_) {
+  if (!neighbourhood_) {
     std::for_each(bodies_[i].partners.begin(), bodies_[i].partners.end(), add);
     return;
   }
   neighbours_.clear();
-  broad_phase_->candidates(i, neighbours_);
+  neighbourhood_->near(i, neighbours_);
   std::for_each(neighbours_.begin(), neighbours_.end(), add);
-}
-
-/// Tells the broad phase where i goes during its next window.
-void EventPredictor::open_window(BodyIndex i, Instant t) {
-  Instant horizon = std::min(motions_.of(i).end(), run_.epoch_end);
-  if (run_.model.is_free(i)) {
-    const Instant window_end = t + window_length(i, t);
-    if (window_end < horizon) {
-      horizon = window_end;
-      run_.agenda.push(horizon, Due::horizon, i, i);
-    }
-  }
-  Aabb& swept = bodies_[i].swept;
-  swept = swept_bounds_(motions_.moving(i), {t, std::max(horizon, t) - t});
-  // Within its tolerance a detector may tell a pair to touch: that must not depend on who is asked.
-  const double asked = run_.options.toi_tolerance;
-  const double near = asked > 0.0 ? asked : 1e-9 * bounding_radius(run_.model.shape(i));
-  if (std::isfinite(near)) {
-    swept.lower.array() -= near;
-    swept.upper.array() += near;
-  }
-  broad_phase_->update(i, swept);
-}
-
-/// How long it takes i to go as far as its reach, s.
-double EventPredictor::window_length(BodyIndex i, Instant t) {
-  double& reach = bodies_[i].reach;
-  if (reach == 0.0) {
-    reach = 4.0 * bounding_radius(run_.model.shape(i));
-  }
-  const Motion& motion = motions_.of(i);
-  const double s = t - motion.start;
-  const double speed = motion.velocity(s).norm();
-  const double acceleration = motion.acceleration(s).norm();
-  // At least as far as its reach at constant acceleration: |v| t + |a| t^2 / 2 = reach.
-  return 2.0 * reach / (speed + std::sqrt(speed * speed + 2.0 * acceleration * reach));
 }
 
 void EventPredictor::predict_near(BodyIndex i, BodyIndex j, Instant known) {
@@ -163,7 +175,7 @@ void EventPredictor::ask(BodyIndex i, BodyIndex j, Instant from, Instant known) 
   if (!(duration > 0.0)) {
     return;
   }
-  const Question question{a, b, from, duration, known};
+  const Question question{a, b, from, duration, known, keeps_meeting(i, j), i};
   if (leaving) {
     predict_parting(question, Due::clear_of_hand);
   } else if (motions_.is_in_field(a, b) || motions_.is_in_field(b, a)) {
@@ -177,7 +189,12 @@ void EventPredictor::ask(BodyIndex i, BodyIndex j, Instant from, Instant known) 
 void EventPredictor::push(const Question& of, double after, Due due, double patience,
                           bool decided) {
   const Instant t = of.from + after;
-  if (of.known < t) {
+  if (!(of.known < t)) {
+    return;
+  }
+  if (of.kept && due == Due::impact && decided) {
+    run_.agenda.meet(of.asker, of.asker == of.a ? of.b : of.a, t, patience);
+  } else {
     run_.agenda.push(t, due, of.a, of.b, patience, decided);
   }
 }
@@ -223,7 +240,7 @@ double EventPredictor::touching_gap(BodyIndex a, BodyIndex b) const {
 void EventPredictor::look_nearer(const Question& question, TimeOfImpact toi) {
   constexpr double worth_it = 1.0 / 16.0;  // of the window
   constexpr int most_tries = 40;           // to 1e-24 of the window
-  const auto& [a, b, t, whole, known] = question;
+  const auto& [a, b, t, whole, known, kept, asker] = question;
   const double allowed = touching_gap(a, b);
   double duration = whole;
   for (int k = 0; k < most_tries; ++k) {
@@ -253,7 +270,7 @@ void EventPredictor::push_meeting(const Question& of, const TimeOfImpact& toi) {
 }
 
 void EventPredictor::predict_meeting(const Question& question) {
-  const auto& [a, b, t, duration, known] = question;
+  const auto& [a, b, t, duration, known, kept, asker] = question;
   const TimeOfImpact toi = time_of_impact(a, b, t, duration);
   if (!run_.model.is_free(a) && !run_.model.is_free(b)) {
     return;  // asked all the same where nothing is left out; nothing can come of it
@@ -277,7 +294,7 @@ void EventPredictor::predict_meeting(const Question& question) {
 /// Two solids that a computation left inside each other, by roundoff: an impact if they approach,
 /// and nothing if they part; a pair that stays would fall through, unless it can be held.
 void EventPredictor::leave_overlap(const Question& question) {
-  const auto& [a, b, t, duration, known] = question;
+  const auto& [a, b, t, duration, known, kept, asker] = question;
   const BodyState state_a = motions_.at(a, t);
   const BodyState state_b = motions_.at(b, t);
   const Overlap o =
@@ -313,7 +330,7 @@ TimeOfImpact EventPredictor::without_errors(BodyIndex a, BodyIndex b, Instant t,
 }
 
 void EventPredictor::predict_parting(const Question& question, Due due) {
-  const auto& [a, b, t, duration, known] = question;
+  const auto& [a, b, t, duration, known, kept, asker] = question;
   const TimeOfImpact toi = time_of_separation(a, b, t, duration);
   if (toi.status != ToiStatus::overlapping) {
     push(question, toi.t_hi, due);
@@ -326,16 +343,12 @@ TimeOfImpact EventPredictor::time_of_separation(BodyIndex a, BodyIndex b, Instan
                                                   {t, duration}, run_.options.toi_tolerance));
 }
 
-void EventPredictor::Watched::persist(Archive& archive) {
-  archive(since, reach, swept.lower, swept.upper);
-}
+void EventPredictor::Watched::persist(Archive& archive) { archive(since); }
 
 void EventPredictor::persist(Archive& archive) {
   archive(bodies_);
-  if (archive.reading() && broad_phase_) {
-    for (const BodyIndex i : run_.agenda.by_name()) {
-      broad_phase_->update(i, bodies_[i].swept);
-    }
+  if (neighbourhood_) {
+    neighbourhood_->persist(archive);
   }
 }
 

@@ -29,8 +29,10 @@ class EventPredictor {
   void predict(BodyIndex i, Instant t) { predict(i, t, i); }
   /// All pairs of i but that with `except`.
   void predict(BodyIndex i, Instant t, BodyIndex except);
-  /// Pairs of i that may have come near: it moves as before, and its window is at its end.
-  void look_around(BodyIndex i, Instant t);
+  /// Body i, which moves as before, comes near others.
+  void cross(BodyIndex i, Instant t);
+  /// The earliest meeting of i was not what it seemed, or is over.
+  void renew(BodyIndex i, Instant t);
   /// A pair whose last answer told nothing beyond t.
   void predict_pair(BodyIndex i, BodyIndex j, Instant t);
 
@@ -48,8 +50,6 @@ class EventPredictor {
   struct Watched {
     std::vector<BodyIndex> partners;  ///< what it can interact with, where there is no broad phase
     Instant since;                    ///< from when on its pairs are asked
-    double reach = 0.0;  ///< how far it goes before its neighbours are looked up again, m
-    Aabb swept{};        ///< what the broad phase was told
 
     void persist(Archive& archive);
   };
@@ -61,13 +61,25 @@ class EventPredictor {
     Instant from;
     double duration = 0.0;  ///< s
     Instant known;
+    bool kept = false;  ///< whether a meeting is kept as that of `asker`
+    BodyIndex asker = 0;
+  };
+  /// Who may be near, and no meeting with whom is due before.
+  struct Near {
+    BodyIndex body = 0;
+    Instant clear;
   };
   static constexpr Instant before_all{-std::numeric_limits<double>::infinity(), 0.0};
 
-  void find_near(BodyIndex i, Instant t);
-  void open_window(BodyIndex i, Instant t);
-  [[nodiscard]] double window_length(BodyIndex i, Instant t);
+  /// Until when a motion that body i has now may be asked about.
+  [[nodiscard]] Instant last_of(BodyIndex i) const {
+    return std::min(motions_.of(i).end(), run_.epoch_end);
+  }
+  void enter(BodyIndex i, Instant t);
   void predict_near(BodyIndex i, BodyIndex j, Instant known = before_all);
+  void survey(BodyIndex i, Instant known);
+  void meet_balls(BodyIndex i, Instant known);
+  [[nodiscard]] bool keeps_meeting(BodyIndex i, BodyIndex with) const;
   void ask(BodyIndex i, BodyIndex j, Instant from, Instant known);
   void push(const Question& of, double after, Due due, double patience = 0.0, bool decided = true);
   void predict_meeting(const Question& question);
@@ -86,10 +98,13 @@ class EventPredictor {
   const EventMotions& motions_;
   const Grasps& grasps_;
   const ContactGraph& graph_;
-  std::unique_ptr<BroadPhase> broad_phase_;  ///< null: every partner is a neighbour
-  SweptBounds swept_bounds_;
+  std::unique_ptr<Neighbourhood> neighbourhood_;  ///< null: every partner is a neighbour
   std::vector<Watched> bodies_;
-  std::vector<BodyIndex> neighbours_;  ///< scratch
+  std::vector<BodyIndex> neighbours_;  ///< scratch, as what follows
+  std::vector<BodyIndex> balls_;
+  std::vector<BallFlight> flights_;
+  std::vector<double> clear_;
+  std::vector<Near> near_;
 };
 
 }  // namespace core

@@ -36,6 +36,13 @@ bool EventWorld::begin() {
 
 void EventWorld::take() {
   const DueEvent event = run_.agenda.pop();
+  take(event);
+  if (event.own && !stopped() && !run_.agenda.is_filed(event.owner)) {
+    predictor_.renew(event.owner, event.time);  // it goes on as before
+  }
+}
+
+void EventWorld::take(const DueEvent& event) {
   if (event.due == Due::epoch_end) {
     return next_epoch(event.time);
   }
@@ -43,7 +50,7 @@ void EventWorld::take() {
     return contacts_.begin_contact(event.a, event.b, event.time);
   }
   if (event.stale) {
-    return;
+    return event.own ? predictor_.renew(event.owner, event.time) : void();
   }
   run_.spend(event);
   if (stopped()) {
@@ -69,7 +76,7 @@ void EventWorld::take() {
     case Due::clear_of_hand:
       return hands_.clear(event.a, event.b, event.time);
     case Due::horizon:
-      return predictor_.look_around(event.a, event.time);
+      return predictor_.cross(event.a, event.time);
     case Due::recheck:
       return predictor_.predict_pair(event.a, event.b, event.time);
     case Due::impact:

@@ -26,7 +26,7 @@ class EventWorld {
   [[nodiscard]] bool begin();
   [[nodiscard]] bool stopped() const { return run_.stopped(); }
   /// Whether something is due before the next frame is drawn.
-  [[nodiscard]] bool due() const { return run_.agenda.due_before(clock_.next()); }
+  [[nodiscard]] bool due() { return run_.agenda.due_before(clock_.next()); }
   /// Takes the earliest event; stale ones change nothing.
   void take();
   /// Draws the frame that is due, or where the run stopped; false when it was the last.
@@ -34,6 +34,7 @@ class EventWorld {
   [[nodiscard]] RunResult result() &&;
 
  private:
+  void take(const DueEvent& event);
   void begin_epoch(Instant t);
   void next_epoch(Instant t);
   void end_segment(BodyIndex i, Instant t);

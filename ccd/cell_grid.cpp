@@ -1,0 +1,203 @@
+#include "ccd/cell_grid.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+
+namespace kairos::ccd {
+namespace {
+
+/// Bodies more than so many times as large as most are not in cells.
+constexpr double unusual = 3.0;
+/// Bodies to a cell at which looking through cells costs as much as crossing them.
+constexpr double bodies_to_a_cell = 0.36;
+
+}  // namespace
+
+CellLayout::CellLayout(const Model& model, double tolerance) {
+  std::vector<double> radii;
+  Vector3 low = Vector3::Zero();
+  Vector3 high = Vector3::Zero();
+  const auto is_usual = [&](BodyIndex i) {
+    const double r = model.is_free(i) ? bounding_radius(model.shape(i)) : 0.0;
+    return std::isfinite(r) && r > 0.0 ? r : 0.0;
+  };
+  for (BodyIndex i = 0; i < model.size(); ++i) {
+    if (const double r = is_usual(i); r > 0.0) {
+      radii.push_back(r);
+    }
+  }
+  if (radii.empty()) {
+    return;
+  }
+  std::sort(radii.begin(), radii.end());
+  const double most = unusual * radii[radii.size() / 2];
+  radius = *(std::upper_bound(radii.begin(), radii.end(), most) - 1);
+  double n = 0.0;
+  for (BodyIndex i = 0; i < model.size(); ++i) {
+    const double r = is_usual(i);
+    if (r > 0.0 && r <= radius) {
+      const Vector3& p = model.body(i).initial.pose.position;
+      low = n == 0.0 ? p : Vector3(low.cwiseMin(p));
+      high = n == 0.0 ? p : Vector3(high.cwiseMax(p));
+      n += 1.0;
+    }
+  }
+  // A detector leaves at most its tolerance; twice that is what no impact law acts across.
+  slack = 1e-3 * radius + 4.0 * tolerance;
+  margin = radius / 16.0;
+  const double least = 2.0 * (radius + slack + margin);
+  const Vector3 size = (high - low).cwiseMax(least);
+  width = std::max(least, std::cbrt(size.prod() * bodies_to_a_cell / n));
+  per_width = 1.0 / width;
+  farthest = 0x1p36 * margin;
+  // Not more cells than bodies call for: along the longest axis they then coincide.
+  double all = 1.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double needed = size[static_cast<Eigen::Index>(k)] * per_width + 3.0;
+    counts[k] = static_cast<std::int64_t>(
+        std::bit_ceil(static_cast<std::uint64_t>(std::clamp(needed, 4.0, 0x1p20))));
+    all *= static_cast<double>(counts[k]);
+  }
+  while (all > 16.0 * n + 64.0) {
+    std::int64_t& longest = *std::max_element(counts.begin(), counts.end());
+    longest /= 2;
+    all /= 2.0;
+  }
+}
+
+CellGrid::CellGrid(const std::array<std::int64_t, 3>& counts)
+    : mask_{counts[0] - 1, counts[1] - 1, counts[2] - 1},
+      shift_{std::countr_zero(static_cast<std::uint64_t>(counts[0])),
+             std::countr_zero(static_cast<std::uint64_t>(counts[1]))},
+      cells_(static_cast<std::size_t>(counts[0] * counts[1] * counts[2])) {}
+
+void CellGrid::insert(const CellIndex& cell, BodyIndex i) {
+  Cell* at = &cells_[place(cell[0], cell[1], cell[2])];
+  if (at->count == room) {
+    at = &with_room(*at);
+  }
+  at->bodies[at->count++] = static_cast<Id>(i);
+}
+
+/// The first of a chain of cells that has room.
+CellGrid::Cell& CellGrid::with_room(Cell& first) {
+  Id link = none;
+  for (Id next = first.next; next != none; next = chained_[next].next) {
+    link = next;
+    if (chained_[next].count < room) {
+      return chained_[next];
+    }
+  }
+  Id fresh = free_;
+  if (fresh == none) {
+    fresh = static_cast<Id>(chained_.size());
+    chained_.emplace_back();
+  } else {
+    free_ = chained_[fresh].next;
+    chained_[fresh] = {};
+  }
+  (link == none ? first : chained_[link]).next = fresh;
+  return chained_[fresh];
+}
+
+/// The last of the chain takes its place.
+void CellGrid::remove(const CellIndex& cell, BodyIndex i) {
+  Cell* last = &cells_[place(cell[0], cell[1], cell[2])];
+  Cell* before = nullptr;
+  Id* found = nullptr;
+  while (true) {
+    for (std::uint32_t k = 0; k < last->count; ++k) {
+      if (last->bodies[k] == i) {
+        found = &last->bodies[k];
+      }
+    }
+    if (last->next == none) {
+      break;
+    }
+    before = last;
+    last = &chained_[last->next];
+  }
+  *found = last->bodies[--last->count];
+  if (last->count == 0 && before != nullptr) {
+    const Id empty = before->next;
+    before->next = none;
+    last->next = free_;
+    free_ = empty;
+  }
+}
+
+inline void CellGrid::append(std::size_t place, BodyIndex i, std::vector<BodyIndex>& out) const {
+  const Cell* cell = &cells_[place];
+  while (true) {
+    for (std::uint32_t k = 0; k < cell->count; ++k) {
+      if (cell->bodies[k] != i) {
+        out.push_back(cell->bodies[k]);
+      }
+    }
+    if (cell->next == none) {
+      return;
+    }
+    cell = &chained_[cell->next];
+  }
+}
+
+void CellGrid::around(const CellIndex& cell, BodyIndex i, std::vector<BodyIndex>& out) const {
+  block(cell, {1, 1, 1}, i, out);
+}
+
+/// Bodies in the cells at most so many along each axis from a cell.
+void CellGrid::block(const CellIndex& cell, const CellIndex& wide, BodyIndex i,
+                     std::vector<BodyIndex>& out) const {
+  for (std::int64_t z = cell[2] - wide[2]; z <= cell[2] + wide[2]; ++z) {
+    for (std::int64_t y = cell[1] - wide[1]; y <= cell[1] + wide[1]; ++y) {
+      const std::size_t row = place(0, y, z);
+      for (std::int64_t x = cell[0] - wide[0]; x <= cell[0] + wide[0]; ++x) {
+        append(row | static_cast<std::size_t>(x & mask_[0]), i, out);
+      }
+    }
+  }
+}
+
+void CellGrid::entered(const CellIndex& before, const CellIndex& now, BodyIndex i,
+                       std::vector<BodyIndex>& out) const {
+  // As a rule it goes one cell on along one axis: a layer of nine.
+  std::size_t axis = 3;
+  std::int64_t steps = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    steps += std::abs(now[k] - before[k]);
+    axis = now[k] != before[k] ? k : axis;
+  }
+  if (steps == 1) {
+    CellIndex layer = now;
+    CellIndex wide{1, 1, 1};
+    layer[axis] += now[axis] - before[axis];
+    wide[axis] = 0;
+    return block(layer, wide, i, out);
+  }
+  const auto known = [&](std::size_t k, std::int64_t c) { return std::abs(c - before[k]) <= 1; };
+  for (std::int64_t z = now[2] - 1; z <= now[2] + 1; ++z) {
+    for (std::int64_t y = now[1] - 1; y <= now[1] + 1; ++y) {
+      for (std::int64_t x = now[0] - 1; x <= now[0] + 1; ++x) {
+        if (!(known(0, x) && known(1, y) && known(2, z))) {
+          append(place(x, y, z), i, out);
+        }
+      }
+    }
+  }
+}
+
+void CellGrid::within(const CellIndex& low, const CellIndex& high,
+                      std::vector<BodyIndex>& out) const {
+  const BodyIndex nobody = none;
+  for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+    for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+      for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+        append(place(x, y, z), nobody, out);
+      }
+    }
+  }
+}
+
+}  // namespace kairos::ccd

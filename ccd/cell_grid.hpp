@@ -1,0 +1,74 @@
+#pragma once
+
+#include "core/model.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace kairos::ccd {
+
+using CellIndex = std::array<std::int64_t, 3>;
+
+/// How large cells are, from the bodies that a model starts with.
+struct CellLayout {
+  /// `tolerance` as in `NeighbourhoodFactory`.
+  CellLayout(const Model& model, double tolerance);
+
+  double radius = 0.0;  ///< greatest bounding radius of bodies in cells, m
+  double slack = 0.0;   ///< what detectors may leave between bodies that touch, errors included, m
+  double margin = 0.0;  ///< how far a body goes beyond its cell before it crosses, m
+  /// Of a cell: two bodies that touch are at most radii and slacks apart, and two that are not in
+  /// neighbouring cells at least the width less two margins.
+  double width = 1.0;
+  double per_width = 1.0;                       ///< its inverse
+  double farthest = 0.0;                        ///< coordinates beyond this resolve no margin, m
+  std::array<std::int64_t, 3> counts{4, 4, 4};  ///< of cells along each axis: powers of two
+};
+
+/// Bodies by cell, on a torus: cells a whole number of turns apart are one.
+class CellGrid {
+ public:
+  explicit CellGrid(const std::array<std::int64_t, 3>& counts);
+
+  [[nodiscard]] std::int64_t count(std::size_t axis) const { return mask_[axis] + 1; }
+
+  void insert(const CellIndex& cell, BodyIndex i);
+  void remove(const CellIndex& cell, BodyIndex i);
+
+  /// Bodies in the cell and its 26 neighbours, i itself left out, appended.
+  void around(const CellIndex& cell, BodyIndex i, std::vector<BodyIndex>& out) const;
+  /// Of those around `now`, the ones that are not around `before`.
+  void entered(const CellIndex& before, const CellIndex& now, BodyIndex i,
+               std::vector<BodyIndex>& out) const;
+  /// Bodies in all cells from `low` to `high`.
+  void within(const CellIndex& low, const CellIndex& high, std::vector<BodyIndex>& out) const;
+
+ private:
+  using Id = std::uint32_t;
+  static constexpr Id none = ~Id{0};
+  static constexpr std::uint32_t room = 2;
+  /// Small, for most hold none or one. What finds no room is in a chain of further ones.
+  struct Cell {
+    Id next = none;
+    std::uint32_t count = 0;
+    std::array<Id, room> bodies{};
+  };
+
+  [[nodiscard]] std::size_t place(std::int64_t x, std::int64_t y, std::int64_t z) const {
+    return static_cast<std::size_t>((((z & mask_[2]) << shift_[1] | (y & mask_[1])) << shift_[0]) |
+                                    (x & mask_[0]));
+  }
+  Cell& with_room(Cell& first);
+  void block(const CellIndex& cell, const CellIndex& wide, BodyIndex i,
+             std::vector<BodyIndex>& out) const;
+  void append(std::size_t place, BodyIndex i, std::vector<BodyIndex>& out) const;
+
+  std::array<std::int64_t, 3> mask_{};
+  std::array<int, 2> shift_{};
+  std::vector<Cell> cells_;
+  std::vector<Cell> chained_;
+  Id free_ = none;
+};
+
+}  // namespace kairos::ccd

@@ -1,0 +1,247 @@
+#include "ccd/cells.hpp"
+
+#include "ccd/cell_grid.hpp"
+#include "ccd/dynamic_tree.hpp"
+#include "ccd/roundoff.hpp"
+#include "ccd/swept_windows.hpp"
+#include "core/archive.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kairos::ccd {
+namespace {
+
+/// First time u > 0 at which x + v u + a u^2 is above `rise`; x = 0 and rise > 0. Infinite: never.
+double time_to_rise(double v, double a, double rise) {
+  if (a == 0.0) {
+    return v > 0.0 ? rise / v : infinity;
+  }
+  const double square = v * v + 4.0 * a * rise;
+  if (!(square >= 0.0)) {
+    return infinity;
+  }
+  const double sum = v + std::sqrt(square);
+  return sum > 0.0 ? 2.0 * rise / sum : infinity;
+}
+
+class Cells final : public Neighbourhood {
+ public:
+  Cells(const Model& model, double tolerance)
+      : layout_(model, tolerance),
+        grid_(layout_.counts),
+        large_(model, make_dynamic_tree(model.size()), tolerance),
+        places_(model.size()),
+        usual_(model.size()) {
+    for (BodyIndex i = 0; i < model.size(); ++i) {
+      usual_[i] = model.is_free(i) && bounding_radius(model.shape(i)) <= layout_.radius;
+    }
+  }
+
+  Instant enter(BodyIndex i, const MovingShape& moving, Instant t, Instant until) override {
+    const double s = t - moving.motion.start;
+    if (!fits(i, moving, s)) {
+      if (places_[i].at == Place::in_cell) {
+        leave(i);
+      }
+      places_[i].at = Place::in_box;
+      return large_.enter(i, moving, t, until);
+    }
+    const Vector3 p = moving.motion.position(s);
+    if (places_[i].at != Place::in_cell || !inside(places_[i].cell, p)) {
+      move(i, cell_of(p));
+    }
+    return exit(i, moving, p, t, until);
+  }
+
+  void near(BodyIndex i, std::vector<BodyIndex>& out) override {
+    if (places_[i].at == Place::in_cell) {
+      grid_.around(places_[i].cell, i, out);
+      large_.boxes().overlapping(reach(places_[i].cell), out);
+    } else if (places_[i].at == Place::in_box) {
+      large_.near(i, out);
+      near_box(large_.swept(i), out);
+    }
+  }
+
+  Instant cross(BodyIndex i, const MovingShape& moving, Instant t, Instant until,
+                std::vector<BodyIndex>& out) override {
+    const double s = t - moving.motion.start;
+    if (places_[i].at != Place::in_cell || !fits(i, moving, s)) {
+      const Instant crosses = enter(i, moving, t, until);
+      near(i, out);
+      return crosses;
+    }
+    const Vector3 p = moving.motion.position(s);
+    const CellIndex before = places_[i].cell;
+    const CellIndex now = cell_of(p);
+    if (now != before) {
+      move(i, now);
+      grid_.entered(before, now, i, out);
+      const Aabb known = reach(before);
+      boxes_.clear();
+      large_.boxes().overlapping(reach(now), boxes_);
+      for (const BodyIndex j : boxes_) {
+        if (!known.overlaps(large_.swept(j))) {
+          out.push_back(j);
+        }
+      }
+    }
+    return exit(i, moving, p, t, until);
+  }
+
+  void persist(Archive& archive) override {
+    large_.persist(archive);
+    archive(places_);
+    if (archive.reading()) {
+      for (BodyIndex i = 0; i < places_.size(); ++i) {
+        if (places_[i].at == Place::in_cell) {
+          grid_.insert(places_[i].cell, i);
+        }
+      }
+    }
+  }
+
+ private:
+  struct Place {
+    enum At : std::uint8_t { nowhere, in_cell, in_box };
+    CellIndex cell{};
+    At at = nowhere;
+
+    void persist(Archive& archive) {
+      archive(cell[0], cell[1], cell[2]);
+      auto where = static_cast<std::uint8_t>(at);
+      archive(where);
+      archive.require(where <= in_box);
+      at = static_cast<At>(where);
+    }
+  };
+
+  /// Whether its coordinates resolve a cell, and its motion is known as well as a cell allows.
+  [[nodiscard]] bool fits(BodyIndex i, const MovingShape& moving, double s) const {
+    if (!usual_[i] || !(moving.motion.error_radius <= layout_.slack)) {
+      return false;
+    }
+    const Polynomial<3>& p = moving.motion.position;
+    double size = p[p.degree()].lpNorm<Eigen::Infinity>();
+    for (int k = p.degree() - 1; k >= 0; --k) {
+      size = size * s + p[k].lpNorm<Eigen::Infinity>();
+    }
+    return size <= layout_.farthest;
+  }
+
+  [[nodiscard]] CellIndex cell_of(const Vector3& p) const {
+    CellIndex cell;
+    for (int k = 0; k < 3; ++k) {
+      cell[static_cast<std::size_t>(k)] =
+          static_cast<std::int64_t>(std::floor(p[k] * layout_.per_width));
+    }
+    return cell;
+  }
+  [[nodiscard]] double corner(std::int64_t c) const {
+    return static_cast<double>(c) * layout_.width;
+  }
+  /// Whether p is in the cell or hardly beyond it: its next crossing is not at once.
+  [[nodiscard]] bool inside(const CellIndex& cell, const Vector3& p) const {
+    for (int k = 0; k < 3; ++k) {
+      const double x = p[k] - corner(cell[static_cast<std::size_t>(k)]);
+      if (!(x >= -0.5 * layout_.margin && x <= layout_.width + 0.5 * layout_.margin)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// All that a body in the cell could touch.
+  [[nodiscard]] Aabb reach(const CellIndex& cell) const {
+    const double beyond = layout_.margin + layout_.radius + layout_.slack;
+    Aabb box;
+    for (int k = 0; k < 3; ++k) {
+      const double x = corner(cell[static_cast<std::size_t>(k)]);
+      box.lower[k] = x - beyond;
+      box.upper[k] = x + layout_.width + beyond;
+    }
+    return box;
+  }
+
+  /// When a body at p leaves the surroundings of its cell, at most 15/16 of the margin beyond it:
+  /// the rest is more than rounding takes.
+  [[nodiscard]] Instant exit(BodyIndex i, const MovingShape& moving, const Vector3& p, Instant t,
+                             Instant until) const {
+    const Motion& motion = moving.motion;
+    const double allowed = 15.0 / 16.0 * layout_.margin;
+    const double s = t - motion.start;
+    double stays = infinity;
+    double least = infinity;
+    for (int k = 0; k < 3; ++k) {
+      const double below = p[k] - (corner(places_[i].cell[static_cast<std::size_t>(k)]) - allowed);
+      const double above = layout_.width + 2.0 * allowed - below;
+      least = std::min({least, below, above});
+      if (motion.position.degree() <= 2) {
+        const double c = motion.position.degree() == 2 ? motion.position[2][k] : 0.0;
+        const double v = motion.position.degree() >= 1 ? motion.position[1][k] + 2.0 * c * s : 0.0;
+        stays = std::min({stays, time_to_rise(v, c, above), time_to_rise(-v, -c, below)});
+      }
+    }
+    if (motion.position.degree() > 2) {
+      stays = motion.duration - s;
+      while (stays > 0.0 && !(motion.displacement_bound(s, s + stays) <= least)) {
+        stays *= 0.5;
+      }
+    }
+    const Instant crosses = t + stays;
+    return crosses < until ? crosses : Instant::never();
+  }
+
+  void leave(BodyIndex i) {
+    if (places_[i].at == Place::in_cell) {
+      grid_.remove(places_[i].cell, i);
+    } else if (places_[i].at == Place::in_box) {
+      large_.leave(i);
+    }
+    places_[i].at = Place::nowhere;
+  }
+  void move(BodyIndex i, const CellIndex& to) {
+    leave(i);
+    grid_.insert(to, i);
+    places_[i] = {to, Place::in_cell};
+  }
+
+  /// Bodies in the cells whose surroundings a box reaches.
+  void near_box(const Aabb& swept, std::vector<BodyIndex>& out) {
+    const double beyond = layout_.margin + layout_.radius + layout_.slack;
+    CellIndex low{};
+    CellIndex high{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      // One more on both sides: these quotients are rounded.
+      const double first = std::floor((swept.lower[axis] - beyond) * layout_.per_width) - 1.0;
+      const double last = std::floor((swept.upper[axis] + beyond) * layout_.per_width) + 1.0;
+      const auto count = static_cast<double>(grid_.count(k));
+      constexpr double countable = 0x1p60;
+      if (!(last - first < count && std::abs(first) < countable)) {
+        low[k] = 0;
+        high[k] = grid_.count(k) - 1;
+      } else {
+        low[k] = static_cast<std::int64_t>(first);
+        high[k] = static_cast<std::int64_t>(last);
+      }
+    }
+    grid_.within(low, high, out);
+  }
+
+  CellLayout layout_;
+  CellGrid grid_;
+  SweptWindows large_;
+  std::vector<Place> places_;
+  std::vector<char> usual_;
+  std::vector<BodyIndex> boxes_;  ///< scratch
+};
+
+}  // namespace
+
+std::unique_ptr<Neighbourhood> make_cells(const Model& model, double tolerance) {
+  return std::make_unique<Cells>(model, tolerance);
+}
+
+}  // namespace kairos::ccd

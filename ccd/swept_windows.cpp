@@ -1,0 +1,92 @@
+#include "ccd/swept_windows.hpp"
+
+#include "ccd/swept_box.hpp"
+#include "core/archive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace kairos::ccd {
+
+SweptWindows::SweptWindows(const Model& model, std::unique_ptr<BroadPhase> boxes, double tolerance)
+    : model_(model), boxes_(std::move(boxes)), tolerance_(tolerance), watched_(model.size()) {}
+
+Instant SweptWindows::enter(BodyIndex i, const MovingShape& moving, Instant t, Instant until) {
+  Instant end = until;
+  Instant crosses = Instant::never();
+  if (model_.is_free(i)) {
+    const Instant window_end = t + window_length(i, moving, t);
+    if (window_end < until) {
+      end = crosses = window_end;
+    }
+  }
+  const double s = t - moving.motion.start;
+  Aabb swept = swept_aabb(moving.shape, moving.motion, s, s + (std::max(end, t) - t));
+  // Within its tolerance a detector may tell a pair to touch: that must not depend on who is asked.
+  const double near = tolerance_ > 0.0 ? tolerance_ : 1e-9 * bounding_radius(moving.shape);
+  if (std::isfinite(near)) {
+    swept.lower.array() -= near;
+    swept.upper.array() += near;
+  }
+  watched_[i].swept = swept;
+  watched_[i].known = true;
+  boxes_->update(i, swept);
+  return crosses;
+}
+
+/// How long it takes i to go as far as its reach, s.
+double SweptWindows::window_length(BodyIndex i, const MovingShape& moving, Instant t) {
+  double& reach = watched_[i].reach;
+  if (reach == 0.0) {
+    reach = 4.0 * bounding_radius(moving.shape);
+  }
+  const double s = t - moving.motion.start;
+  const double speed = moving.motion.velocity(s).norm();
+  const double acceleration = moving.motion.acceleration(s).norm();
+  // At least as far as its reach at constant acceleration: |v| t + |a| t^2 / 2 = reach.
+  return 2.0 * reach / (speed + std::sqrt(speed * speed + 2.0 * acceleration * reach));
+}
+
+void SweptWindows::near(BodyIndex i, std::vector<BodyIndex>& out) {
+  const std::size_t before = out.size();
+  boxes_->candidates(i, out);
+  // About ten neighbours cost least.
+  constexpr std::size_t few = 8;
+  constexpr std::size_t many = 16;
+  const std::size_t found = out.size() - before;
+  if (found > many) {
+    watched_[i].reach *= 0.5;
+  } else if (found < few) {
+    watched_[i].reach *= 1.5;
+  }
+}
+
+Instant SweptWindows::cross(BodyIndex i, const MovingShape& moving, Instant t, Instant until,
+                            std::vector<BodyIndex>& out) {
+  const Instant crosses = enter(i, moving, t, until);
+  near(i, out);
+  return crosses;
+}
+
+void SweptWindows::leave(BodyIndex i) {
+  watched_[i].known = false;
+  boxes_->remove(i);
+}
+
+void SweptWindows::Watched::persist(Archive& archive) {
+  archive(reach, swept.lower, swept.upper, known);
+}
+
+void SweptWindows::persist(Archive& archive) {
+  archive(watched_);
+  if (archive.reading()) {
+    for (BodyIndex i = 0; i < watched_.size(); ++i) {
+      if (watched_[i].known) {
+        boxes_->update(i, watched_[i].swept);
+      }
+    }
+  }
+}
+
+}  // namespace kairos::ccd

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "core/model.hpp"
+#include "core/neighbourhood.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace kairos::ccd {
+
+/// A broad phase of boxes as a neighbourhood: each body opens a window as long as it takes it to go
+/// some way, its *reach*, and is near all whose swept boxes overlap its own. Reaches adapt: windows
+/// grow where few are near and shrink where many are. What does not move freely has one window for
+/// its whole motion.
+class SweptWindows final : public Neighbourhood {
+ public:
+  /// `tolerance` as in `NeighbourhoodFactory`.
+  SweptWindows(const Model& model, std::unique_ptr<BroadPhase> boxes, double tolerance);
+
+  Instant enter(BodyIndex i, const MovingShape& moving, Instant t, Instant until) override;
+  void near(BodyIndex i, std::vector<BodyIndex>& out) override;
+  Instant cross(BodyIndex i, const MovingShape& moving, Instant t, Instant until,
+                std::vector<BodyIndex>& out) override;
+  void persist(Archive& archive) override;
+
+  /// Body i is somewhere else.
+  void leave(BodyIndex i);
+
+  /// What i sweeps during its window, rounding and tolerance included.
+  [[nodiscard]] const Aabb& swept(BodyIndex i) const { return watched_[i].swept; }
+  [[nodiscard]] const BroadPhase& boxes() const { return *boxes_; }
+
+ private:
+  struct Watched {
+    double reach = 0.0;  ///< how far it goes before its neighbours are looked up again, m
+    Aabb swept{};
+    bool known = false;
+
+    void persist(Archive& archive);
+  };
+
+  [[nodiscard]] double window_length(BodyIndex i, const MovingShape& moving, Instant t);
+
+  const Model& model_;
+  std::unique_ptr<BroadPhase> boxes_;
+  double tolerance_;
+  std::vector<Watched> watched_;
+};
+
+}  // namespace kairos::ccd
