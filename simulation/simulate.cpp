@@ -25,6 +25,10 @@ constexpr double most_frames = 1e13;
 /// No scene reaches farther: what is larger asks for nothing, and overflows where it is squared.
 constexpr double most_tolerance = 1e12;
 
+/// How many steps, each as far off the joints as its tolerance, a multistep method goes on from
+/// states that are not put back: begun anew, it starts at order 1.
+constexpr double steps_of_drift = 100.0;
+
 /// The names of a choice, resolved.
 struct Plan {
   std::shared_ptr<const Scheme> scheme;
@@ -99,8 +103,10 @@ Plan make_plan(const Model& model, const RunChoice& choice, const PlugIns& own) 
       return with_cold_restarts(make(of, island));
     };
   }
-  plan.method.stepper = [make = plan.method.stepper](const Model& of, std::size_t island) {
-    return make_constrained(make(of, island), of.islands()[island]);
+  const double most_drift = steps_of_drift * choice.stepper.relative_tolerance;
+  plan.method.stepper = [make = plan.method.stepper, most_drift](const Model& of,
+                                                                 std::size_t island) {
+    return make_constrained(make(of, island), of.islands()[island], most_drift);
   };
   const double frame = mean_frame_duration(plan.options.frames);
   require(positive(frame), "frame", frame, "a finite number > 0 (s)");

@@ -12,9 +12,6 @@ namespace kairos {
 inline namespace core {
 namespace {
 
-/// Of the size: a multistep method whose own states are farther off begins anew.
-constexpr double most_drift = 1e-9;
-
 /// A stand-in for joint forces: they depend on velocities, and have no potential.
 class VelocityForce final : public Force {
  public:
@@ -70,7 +67,8 @@ Vector3 rotation_between(const Quaternion& from, const Quaternion& to) {
 
 class ConstrainedStepper final : public Stepper {
  public:
-  explicit ConstrainedStepper(std::unique_ptr<Stepper> inner) : inner_(std::move(inner)) {}
+  ConstrainedStepper(std::unique_ptr<Stepper> inner, double most_drift)
+      : inner_(std::move(inner)), most_drift_(most_drift) {}
 
   [[nodiscard]] StepperInfo info() const override { return inner_->info(); }
   [[nodiscard]] std::string refuses(const Island& island) const override {
@@ -115,7 +113,7 @@ class ConstrainedStepper final : public Stepper {
     const JointProjection velocities = joints.project_velocities(end, states);
     result.projection = {velocities.velocity, velocities.driven, positions.position, true};
     after_.assign(states.begin(), states.end());
-    anew_ = !info().variable_order || drift > most_drift * joints.size();
+    anew_ = !info().variable_order || drift > most_drift_ * joints.size();
     return result;
   }
 
@@ -163,6 +161,7 @@ class ConstrainedStepper final : public Stepper {
   }
 
   std::unique_ptr<Stepper> inner_;
+  double most_drift_;              ///< of a multistep method's own states, relative to the size
   std::vector<BodyState> own_;     ///< of the stepper, not put back
   std::vector<BodyState> before_;  ///< of the last step, as they are told
   std::vector<BodyState> after_;
@@ -172,11 +171,12 @@ class ConstrainedStepper final : public Stepper {
 
 }  // namespace
 
-std::unique_ptr<Stepper> make_constrained(std::unique_ptr<Stepper> stepper, const Island& island) {
+std::unique_ptr<Stepper> make_constrained(std::unique_ptr<Stepper> stepper, const Island& island,
+                                          double most_drift) {
   if (island.joints == nullptr || stepper == nullptr || stepper->holds_joints()) {
     return stepper;
   }
-  return std::make_unique<ConstrainedStepper>(std::move(stepper));
+  return std::make_unique<ConstrainedStepper>(std::move(stepper), most_drift);
 }
 
 }  // namespace core

@@ -17,10 +17,10 @@ inline namespace core {
 /// that it begins and ends where the states are; between, it is off by what it was.
 ///
 /// Methods of one step go on from the states as they were put back. Multistep methods keep their
-/// history: what is put back are the states that they show, until their own have drifted by 1e-9
-/// of the size, where they begin anew.
+/// history: what is put back are the states that they show, until their own have drifted by
+/// `most_drift` of the size, where they begin anew: some steps' worth of their tolerance.
 [[nodiscard]] std::unique_ptr<Stepper> make_constrained(std::unique_ptr<Stepper> stepper,
-                                                        const Island& island);
+                                                        const Island& island, double most_drift);
 
 }  // namespace core
 }  // namespace kairos

@@ -122,6 +122,26 @@ velocity = [1.0, 0.0, 0.0]
 restitution = 0.5
 )";
 
+/// A bar on a hinge swings against a block.
+constexpr std::string_view struck = R"([[body]]
+name = "bar"
+entity = "body"
+half_extents = [0.05, 0.5, 0.05]
+mass = 1.0
+position = [0.42073549240394825, -0.2701511529340699, 0.0]
+axis_angle = [0.0, 0.0, 1.0, 1.0]
+[[body]]
+name = "block"
+entity = "wall"
+half_extents = [0.1, 0.3, 1.0]
+position = [0.0, -1.25, 0.0]
+[[joint]]
+kind = "hinge"
+bodies = ["bar"]
+anchor = [0.0, 0.0, 0.0]
+axis = [0.0, 0.0, 1.0]
+)";
+
 std::vector<Case> cases() {
   std::vector<Case> all;
   for (const auto& [name, duration] :
@@ -132,6 +152,7 @@ std::vector<Case> cases() {
   }
   all.push_back({"drag", Model(with_drag(read_scene(find_scene("spinning-box")), 1)), 0.1});
   all.push_back({"slide", Model(with_drag(parse_scene(slide, "slide.toml"), 1)), 0.5});
+  all.push_back({"struck", Model(parse_scene(struck, "struck.toml")), 0.6});
   all.push_back({"many", Model(parse_scene(many_balls(), "many.toml")), 0.25});
   return all;
 }
