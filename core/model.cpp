@@ -211,11 +211,11 @@ void Model::choose_pairs() {
   const std::size_t all = size() * (size() - 1) / 2;
   const std::size_t tested = pairs_.size();
   decide({{"pairs", fmt::format("{} of {} are tested", tested, all),
-           tested == all ? "nothing is left out"
-                         : fmt::format("{} cannot do anything to each other: neither moves freely, "
-                                       "or a field would act on what does not{}",
-                                       all - tested,
-                                       scene_.joints.empty() ? "" : ", or a joint holds them")},
+           tested == all
+               ? "nothing is left out"
+               : fmt::format("{} cannot do anything to each other: neither moves freely, "
+                             "or a field would act on what does not{}",
+                             all - tested, scene_.joints.empty() ? "" : ", or a joint holds them")},
           choose_broad_phase()});
 }
 

@@ -31,7 +31,7 @@ struct StepResult {
   double advanced = 0.0;  ///< s; less than asked for only by controlled steppers, never 0 if ok
   double error = 0.0;     ///< estimated local error, in units of the tolerance; 0: none
   bool ok = true;
-  std::string_view reason;  ///< of a failure
+  std::string_view reason;          ///< of a failure
   JointProjection projection = {};  ///< at the end of the step, of islands with joints
 };
 

@@ -26,8 +26,7 @@ void RunGuard::begin(const Model& model) {
   free_top_.assign(model.size(), 0);
   most_energy_.assign(model.size(), unknown);
   for (BodyIndex i = 0; i < model.size(); ++i) {
-    free_top_[i] =
-        watch_spin_ && model.is_free(i) && model.rotates(i) && !model.jointed(i) ? 1 : 0;
+    free_top_[i] = watch_spin_ && model.is_free(i) && model.rotates(i) && !model.jointed(i) ? 1 : 0;
   }
   if (model.has_friction()) {
     free_top_.assign(model.size(), 0);  // what rolls takes spin from its way
