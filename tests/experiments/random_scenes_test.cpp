@@ -349,6 +349,13 @@ TEST_CASE("shipped scenes do not depend on the order of their bodies, energy inc
         i = last - i;
       }
     }
+    for (Joint& joint : other.joints) {
+      for (JointSide* const side : {&joint.a, &joint.b}) {
+        if (side->body) {
+          side->body = last - *side->body;
+        }
+      }
+    }
     Books plain, reversed;
     const RunChoice choice{.duration = std::min(scene.duration, 2.0)};
     if (!why_refused(Model(scene), choice).empty()) {

@@ -345,7 +345,9 @@ void EventMotions::set_forces(Flow& flow) {
     field_forces_[i] = field_forces_at(i);
     Vector3 force = net_force(i);
     if (const auto& support = bodies_[i].support) {
-      force -= support->normal * support->normal.dot(force);
+      for (int pass = 0; pass < 2; ++pass) {  // the first leaves roundoff of what it takes away
+        force -= support->normal * support->normal.dot(force);
+      }
       if (!flow.island.forces.empty()) {
         flow.support = std::make_unique<SupportForce>(support->normal);
         flow.island.forces.push_back(flow.support.get());
