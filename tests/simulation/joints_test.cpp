@@ -175,7 +175,9 @@ TEST_CASE("joints: every stepper keeps a pendulum on its rod, or says why not", 
     choice.method.integrator = std::string(entry.info.name);
     choice.duration = 0.5;
     choice.step = 1.0 / 240.0;
-    choice.stepper = {1e-7, 1e-7};
+    if (entry.info.name == "arkode-2") {  // of order 2: a minute at the default tolerance
+      choice.stepper = {1e-7, 1e-7};
+    }
     if (const std::string reason = why_refused(model, choice); !reason.empty()) {
       CHECK(reason.find(entry.info.name) != std::string::npos);
       continue;
@@ -185,8 +187,8 @@ TEST_CASE("joints: every stepper keeps a pendulum on its rod, or says why not", 
     CAPTURE(run.result.reason);
     REQUIRE(run.result.status == RunStatus::completed);
     // At the end of the run a step of a controlled stepper need not end: between, the dense output
-    // is off by what its order and a tolerance of 1e-7 a step say.
-    CHECK(largest_drift(run, model) < (entry.info.order > 2 ? 1e-5 : 1e-3));
+    // is off by what its order says.
+    CHECK(largest_drift(run, model) < (entry.info.order > 2 ? 1e-7 : 1e-3));
     tests::check_explained(run.result.ledger);
     ++ran;
   }
