@@ -151,3 +151,36 @@ def test_every_impact_law_is_a_keyword(law):
     if not reason:
         run = kairos.run("cradle", impact=law, duration=1)
         assert run.cost["impacts"] > 0 and run.summary["method"]["impact"] == law
+
+
+def test_joints_are_methods_with_the_keys_of_scene_files():
+    """The shipped pendulum, built: the same bits."""
+    def pendulum(**keys):
+        scene = kairos.Scene("pendulum", duration=10.0, frame="1/60", G=9.8)
+        scene.body("bar", entity="body", half_extents=(0.05, 0.5, 0.05), mass=1.0,
+                   position=(0.45464871341284085, 0.2080734182735712, 0.0),
+                   axis_angle=(0.0, 0.0, 1.0, 2.0))
+        return scene.joint("pivot", **{"kind": "hinge", "bodies": ["bar"], "anchor": (0, 0, 0),
+                                       "axis": (0, 0, 1), **keys})
+
+    built, shipped = kairos.run(pendulum(), duration=1), kairos.run("pendulum", duration=1)
+    assert np.array_equal(built.position, shipped.position)
+    assert np.ptp(built.position[:, 0, 0]) > 0.1  # it swings
+    assert refused(lambda: pendulum(kind="hinj").check()).key == "joint.pivot.kind"
+    assert "axes" in str(refused(lambda: pendulum(axes=(0, 0, 1)).check()))
+
+
+def test_convex_shapes_are_built_with_the_keys_of_scene_files():
+    """A capsule, a cylinder, a cone and a hull fall; each stays above the floor."""
+    scene = kairos.Scene("shapes", duration=0.5, frame="1/60", G=9.8)
+    scene.wall("floor", shape="half-space")
+    shapes = {"capsule": {"radius": 0.1, "length": 0.4}, "cylinder": {"radius": 0.1, "length": 0.4},
+              "cone": {"radius": 0.2, "height": 0.4},
+              "hull": {"points": [(0, 0, 0), (0.3, 0, 0), (0, 0.3, 0), (0, 0, 0.3)]}}
+    for k, (shape, keys) in enumerate(shapes.items()):
+        scene.body(shape, entity="body", shape=shape, mass=1.0, position=(k, 1.0, 0), **keys)
+    run = kairos.run(scene)
+    assert len(run.events) >= len(shapes)
+    assert run.summary["metrics"]["max_depth"] == 0.0
+    assert refused(lambda: scene.body("flat", entity="body", shape="cone", mass=1.0, radius=0.2,
+                                      height=0.0).check()).key == "body.flat.height"
