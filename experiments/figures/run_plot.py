@@ -212,6 +212,15 @@ def _draw_bodies(panel, run, chosen, values):
     _draw_events(panel, run)
 
 
+def _draw_gaps(panel, run, gaps):
+    _draw_bodies(panel, run, gaps, gaps.get)
+    panel.axhline(0, color="black", linewidth=0.8)
+    depths = [np.minimum(gap, 0) for gap in gaps.values() if gap is not None]
+    if depths:
+        panel.fill_between(run.times, np.min(depths, axis=0), 0, color="#EE6677", alpha=0.35,
+                           linewidth=0)
+
+
 def _draw_ledger(panel, run):
     scale = max(np.nanmax(np.abs(run.ledger["kinetic"])), abs(run.ledger["kinetic"][0] +
                 run.ledger["potential"][0]), 1e-300)
@@ -241,22 +250,23 @@ def figure_of(runs, bodies=None):
     if not 1 <= len(runs) <= MOST_RUNS:
         raise SystemExit(f"{len(runs)} runs; allowed: 1 to {MOST_RUNS} beside each other")
     style.use()
-    figure, panels = plt.subplots(4, len(runs), squeeze=False, sharex="col", sharey="row",
-                                  figsize=(1.2 + 4.6 * len(runs), 8.4))
     axis = _axis_of_heights(runs, bodies)
-    rows = (("x / m", "height / m", "z / m")[axis], "gap to the nearest / m", "speed / (m/s)", "energy ledger / J")
-    for column, run in enumerate(runs):
-        chosen = _chosen(run, bodies)
-        run = with_events(run)
-        gaps = {i: least_gap(run, i) for i in chosen}
-        height, gap, speed, ledger = panels[:, column]
+    runs = [with_events(run) for run in runs]
+    gaps_of = [{i: least_gap(run, i) for i in _chosen(run, bodies)} for run in runs]
+    # Gaps are told of balls, boxes and half-spaces; without any, their row is left out.
+    some_gaps = any(gap is not None for gaps in gaps_of for gap in gaps.values())
+    rows = [("x / m", "height / m", "z / m")[axis], "gap to the nearest / m", "speed / (m/s)",
+            "energy ledger / J"]
+    if not some_gaps:
+        del rows[1]
+    figure, panels = plt.subplots(len(rows), len(runs), squeeze=False, sharex="col", sharey="row",
+                                  figsize=(1.2 + 4.6 * len(runs), 2.1 * len(rows)))
+    for column, (run, gaps) in enumerate(zip(runs, gaps_of)):
+        chosen = list(gaps)
+        height, speed, ledger = panels[0, column], panels[-2, column], panels[-1, column]
         _draw_bodies(height, run, chosen, lambda i: run.position[:, i, axis])
-        _draw_bodies(gap, run, chosen, gaps.get)
-        gap.axhline(0, color="black", linewidth=0.8)
-        depths = [np.minimum(gaps[i], 0) for i in chosen if gaps[i] is not None]
-        if depths:
-            gap.fill_between(run.times, np.min(depths, axis=0), 0, color="#EE6677", alpha=0.35,
-                             linewidth=0)
+        if some_gaps:
+            _draw_gaps(panels[1, column], run, gaps)
         _draw_bodies(speed, run, chosen, lambda i: np.linalg.norm(run.velocity[:, i], axis=1))
         _draw_ledger(ledger, run)
         more = sum(body["moves"] != "fixed" for body in run.bodies) - len(chosen)
