@@ -44,9 +44,12 @@ function difference(one, other) {
  * in a thousand to the other neighbour than glibc does, so that last digits differ, and through impacts and
  * spins somewhat more (7e-13 m at most where this was measured). All others are the same to the byte.
  */
-const transcendental = new Set(["bat", "flipping-box", "gas", "spinning-box", "spring", "stroke", "table", "table-tennis"]);
+const transcendental = new Set(["aero", "bat", "belt", "box-landing", "double-pendulum", "flipping-box", "gas", "rolling", "shapes",
+  "slider-crank", "spinning-box", "spring", "stroke", "table", "table-tennis"]);
 /** A last digit of a velocity grows tenfold with every impact or two: only the start is the same. */
 const chaotic = new Set(["gas"]);
+/** The thesis' integrator drives a bar off its hinge until a run stops: roundoff grows with it. */
+const diverging = new Set(["pendulum, the thesis' own"]);
 const start = (table) => table.split("\n").filter((line, i) => i === 0 || line.startsWith("0,")).join("\n");
 
 test("every shipped scene: the bytes of the program's files, or last digits where a sine is asked for", async (t) => {
@@ -57,17 +60,18 @@ test("every shipped scene: the bytes of the program's files, or last digits wher
         let code = 0;
         await kairos("run", name, ...words, "--out", out).catch((ended) => (code = ended.code));
         const { tables: mine, error } = engine.tables(task(path, settings));
-        if (code === 2) {  // refused, as friction by a scheme that knows none: here as there
-          assert.match(error.reason, /friction/);
+        if (code === 2) {  // refused, as friction or joints by a scheme that knows none: here as there
+          assert.match(error.reason, /friction|joints/);
           return;
         }
         assert.ok(code <= 1);
         assert.equal(error, null);
+        const grows = chaotic.has(name) || diverging.has(`${name}, ${method}`);
         for (const [i, table] of tables.entries()) {
           const theirs = await readFile(join(out, `${table}.csv`), "utf8");
-          if (mine[i] === theirs || (chaotic.has(name) && table === "events")) continue;
-          const off = chaotic.has(name) ? difference(start(mine[i]), start(theirs)) : difference(mine[i], theirs);
-          assert.ok(transcendental.has(name), `${table}.csv differs by ${off}`);
+          if (mine[i] === theirs || (grows && table === "events")) continue;
+          const off = grows ? difference(start(mine[i]), start(theirs)) : difference(mine[i], theirs);
+          assert.ok(grows || transcendental.has(name), `${table}.csv differs by ${off}`);
           assert.ok(off < 1e-9, `${table}.csv: ${off}`);
         }
       });
