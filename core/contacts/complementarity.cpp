@@ -1,6 +1,6 @@
 #include "core/contacts/complementarity.hpp"
 
-#include <Eigen/QR>
+#include "core/contacts/least_norm.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -12,18 +12,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// Directions that W does not feel are left out, as is roundoff in them.
-constexpr double rank_threshold = 1e-12;
-
-VectorXd least_norm(const MatrixXd& W, const VectorXd& right) {
-  Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
-  decomposition.setThreshold(rank_threshold);
-  decomposition.compute(W);
-  VectorXd x = decomposition.solve(right);
-  x += decomposition.solve(right - W * x);  // the residual of ill-scaled rows, once
-  return x;
-}
 
 /// W x = -q on the rows that are pressed, 0 elsewhere.
 VectorXd on_rows(const MatrixXd& W, const VectorXd& q, const std::vector<Index>& pressed) {

@@ -16,6 +16,8 @@ struct GroupBody {
   Vector3 position = Vector3::Zero();         ///< of its origin, m
 };
 
+[[nodiscard]] inline bool moves(const GroupBody& body) { return body.inverse_mass > 0.0; }
+
 /// As the model knows it, at this pose; what is not free has inverses of 0.
 [[nodiscard]] GroupBody group_body(const BodyInertia& inertia, const Pose& pose);
 

@@ -27,8 +27,6 @@ double largest_load(const ContactGroup& group) {
 
 double speed(const Twist& v, double radius) { return v.linear.norm() + v.angular.norm() * radius; }
 
-bool moves(const GroupBody& body) { return body.inverse_mass > 0.0; }
-
 /// One group while it is looked at.
 class Attempt {
  public:

@@ -1,6 +1,6 @@
 #include "core/contacts/nonnegative_solve.hpp"
 
-#include <Eigen/QR>
+#include "core/contacts/least_norm.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -14,8 +14,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Columns that the others imply up to roundoff are left out.
-constexpr double rank_threshold = 1e-12;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 VectorXd on_columns(const MatrixXd& A, const VectorXd& b, const std::vector<Index>& columns) {
@@ -23,12 +21,7 @@ VectorXd on_columns(const MatrixXd& A, const VectorXd& b, const std::vector<Inde
   for (std::size_t k = 0; k < columns.size(); ++k) {
     part.col(static_cast<Index>(k)) = A.col(columns[k]);
   }
-  Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
-  decomposition.setThreshold(rank_threshold);
-  decomposition.compute(part);
-  VectorXd x = decomposition.solve(b);
-  x += decomposition.solve(b - part * x);  // the residual of ill-scaled rows, once
-  return x;
+  return least_norm(part, b);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/reading/csv.hpp"
 #include "core/reading/document.hpp"
+#include "core/reading/point_list.hpp"
 #include "experiments/output/output_folder.hpp"
 #include "experiments/output/table_rows.hpp"
 
@@ -119,30 +120,19 @@ class Summary {
   }
 
   [[nodiscard]] Hull hull(const Fields& body) const {
-    std::vector<Vector3> points;
-    Vector3 point;
-    int coordinate = 0;
-    std::string_view rest = field(body, "vertices");
-    while (!rest.empty()) {
-      const std::size_t end = rest.find_first_of(" ;");
-      const std::string_view word = rest.substr(0, end);
-      rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-      if (word.empty()) {
-        continue;
-      }
-      const auto x = parse_number(std::string(word));
+    const auto points = read_point_list(field(body, "vertices"), [&](std::string_view word) {
+      const auto x = parse_number(word);
       if (!x) {
         fail(body, "vertices", fmt::format("holds {}; allowed: numbers", word));
       }
-      point[coordinate++] = *x;
-      if (coordinate == 3) {
-        points.push_back(point);
-        coordinate = 0;
-      }
+      return *x;
+    });
+    if (!points) {
+      fail(body, "vertices", "holds no whole number of points; allowed: three numbers each");
     }
     const auto rounding = parse_number(field(body, "rounding"));
     try {
-      return {convex_hull(points).polytope, rounding.value_or(0.0)};
+      return {convex_hull(*points).polytope, rounding.value_or(0.0)};
     } catch (const std::exception& error) {
       fail(body, "vertices", error.what());
     }

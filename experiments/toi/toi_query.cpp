@@ -1,6 +1,7 @@
 #include "experiments/toi/toi_query.hpp"
 
 #include "core/reading/csv.hpp"
+#include "core/reading/point_list.hpp"
 #include "simulation/query_limits.hpp"
 
 #include <fmt/format.h>
@@ -152,32 +153,17 @@ class ToiQueryFormat::Body {
       throw BadField{columns_.shape_name,
                      fmt::format("a hull needs the column {}", columns_.points_name)};
     }
-    std::vector<Vector3> points;
-    Vector3 point;
-    int coordinate = 0;
-    std::string_view rest = unquoted(fields_[columns_.points]);
-    while (!rest.empty()) {
-      const std::size_t end = rest.find_first_of(" ;");
-      const std::string_view word = rest.substr(0, end);
-      rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-      if (word.empty()) {
-        continue;
-      }
-      point[coordinate++] = read_number(word, columns_.points_name);
-      if (coordinate == 3) {
-        points.push_back(point);
-        coordinate = 0;
-      }
-    }
+    const auto points = read_point_list(unquoted(fields_[columns_.points]), [&](auto word) {
+      return read_number(word, columns_.points_name);
+    });
     const double rounding = number(h);
-    if (coordinate != 0 || !(rounding >= 0.0)) {
-      throw BadField{coordinate != 0 ? columns_.points_name : columns_.name[h],
-                     coordinate != 0
-                         ? "holds no whole number of points; allowed: three numbers each"
-                         : "is below 0; allowed: the rounding of the hull (m)"};
+    if (!points || !(rounding >= 0.0)) {
+      throw BadField{!points ? columns_.points_name : columns_.name[h],
+                     !points ? "holds no whole number of points; allowed: three numbers each"
+                             : "is below 0; allowed: the rounding of the hull (m)"};
     }
     try {
-      ConvexHull found = convex_hull(points);
+      ConvexHull found = convex_hull(*points);
       refuse(columns_.points_name, why_no_extent(found.polytope->width));
       axes_ = found.axes;
       return Hull{std::move(found.polytope), rounding};

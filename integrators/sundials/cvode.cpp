@@ -18,18 +18,9 @@ using sundials::WatchedSystem;
 struct FreeCvode {
   void operator()(void* memory) const { CVodeFree(&memory); }
 };
-struct FreeMatrix {
-  void operator()(SUNMatrix matrix) const { SUNMatDestroy(matrix); }
-};
-struct FreeLinear {
-  void operator()(SUNLinearSolver solver) const { SUNLinSolFree(solver); }
-};
 struct FreeNonlinear {
   void operator()(SUNNonlinearSolver solver) const { SUNNonlinSolFree(solver); }
 };
-template <typename Handle, typename Deleter>
-using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Deleter>;
-
 /// The last step of the solver as polynomials of the flat state, in powers of the time since it
 /// began.
 class History {
@@ -250,9 +241,9 @@ class Cvode final : public Stepper {
   IslandOde ode_;
   sundials::Context context_;
   sundials::Vector y_, derivative_;
-  Owned<SUNMatrix, FreeMatrix> matrix_;
-  Owned<SUNLinearSolver, FreeLinear> linear_;
-  Owned<SUNNonlinearSolver, FreeNonlinear> nonlinear_;
+  sundials::Matrix matrix_;
+  sundials::LinearSolver linear_;
+  sundials::Owned<SUNNonlinearSolver, FreeNonlinear> nonlinear_;
   WatchedSystem system_;
   std::unique_ptr<void, FreeCvode> memory_;
   History history_;             ///< of the solver's step, from the end of the last piece on

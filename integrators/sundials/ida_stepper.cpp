@@ -2,6 +2,7 @@
 
 #include "core/joint_system.hpp"
 #include "integrators/dense_output.hpp"
+#include "integrators/sundials/cvode.hpp"
 #include "integrators/sundials/island_system.hpp"
 
 #include <ida/ida.h>
@@ -9,7 +10,6 @@
 #include <sunmatrix/sunmatrix_dense.h>
 
 #include <algorithm>
-#include <type_traits>
 #include <vector>
 
 namespace kairos::integrators::sundials {
@@ -18,14 +18,6 @@ namespace {
 struct FreeIda {
   void operator()(void* memory) const { IDAFree(&memory); }
 };
-struct FreeMatrix {
-  void operator()(SUNMatrix matrix) const { SUNMatDestroy(matrix); }
-};
-struct FreeLinear {
-  void operator()(SUNLinearSolver solver) const { SUNLinSolFree(solver); }
-};
-template <typename Handle, typename Deleter>
-using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Deleter>;
 
 void silence(void* solver) {
 #if SUNDIALS_VERSION_MAJOR >= 7
@@ -107,15 +99,9 @@ class Ida final : public Stepper {
   explicit Ida(const StepperOptions& options) : options_(options) {}
 
   [[nodiscard]] StepperInfo info() const override {
-    return {.name = "ida",
-            .order = 5,
-            .position_order = 5,
-            .velocity_order = 5,
-            .symplectic = false,
-            .controlled = true,
-            .library = "SUNDIALS",
-            .source = "Hindmarsh2005",
-            .variable_order = true};
+    StepperInfo info = cvode_bdf_info;  // the same formulas, on a system with constraints
+    info.name = "ida";
+    return info;
   }
   [[nodiscard]] bool holds_joints() const override { return true; }
   [[nodiscard]] std::int64_t evaluations() const override { return evaluations_ + counted(); }
@@ -288,8 +274,8 @@ class Ida final : public Stepper {
   ConstrainedSystem system_;
   Context context_;
   Vector y_, rate_, kind_, derivative_;
-  Owned<SUNMatrix, FreeMatrix> matrix_;
-  Owned<SUNLinearSolver, FreeLinear> linear_;
+  Matrix matrix_;
+  LinearSolver linear_;
   std::unique_ptr<void, FreeIda> memory_;
   std::vector<std::vector<double>> history_;
   std::vector<BodyState> before_;

@@ -4,6 +4,8 @@
 #include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
+#include <sundials/sundials_linearsolver.h>
+#include <sundials/sundials_matrix.h>
 #include <sundials/sundials_version.h>
 
 #include <memory>
@@ -20,10 +22,13 @@ using Real = sunrealtype;
 using Real = realtype;
 #endif
 
+template <typename Handle, typename Deleter>
+using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Deleter>;
+
 struct FreeContext {
   void operator()(SUNContext context) const { SUNContext_Free(&context); }
 };
-using Context = std::unique_ptr<std::remove_pointer_t<SUNContext>, FreeContext>;
+using Context = Owned<SUNContext, FreeContext>;
 
 /// A context of one stepper's own: steppers of different threads share nothing.
 inline Context make_context() {
@@ -40,7 +45,15 @@ inline Context make_context() {
 struct FreeVector {
   void operator()(N_Vector vector) const { N_VDestroy(vector); }
 };
-using Vector = std::unique_ptr<std::remove_pointer_t<N_Vector>, FreeVector>;
+using Vector = Owned<N_Vector, FreeVector>;
+struct FreeMatrix {
+  void operator()(SUNMatrix matrix) const { SUNMatDestroy(matrix); }
+};
+using Matrix = Owned<SUNMatrix, FreeMatrix>;
+struct FreeLinearSolver {
+  void operator()(SUNLinearSolver solver) const { SUNLinSolFree(solver); }
+};
+using LinearSolver = Owned<SUNLinearSolver, FreeLinearSolver>;
 
 inline Vector make_vector(std::size_t size, SUNContext context) {
   return Vector(N_VNew_Serial(static_cast<sunindextype>(size), context));

@@ -6,6 +6,7 @@
 #include "core/reading/scene_reader.hpp"
 #include "core/scene.hpp"
 #include "tests/catch.hpp"
+#include "tests/core/refused.hpp"
 #include "tests/locations.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -16,6 +17,8 @@
 using namespace kairos;
 
 namespace {
+
+using tests::BadScene;
 
 /// Lines 1 to 3 of a scene that has only a floor.
 const std::string floor_lines =
@@ -30,26 +33,9 @@ const std::string wall_lines =
 const std::string bat_lines =
     "[[body]]\nname = \"bat\"\nentity = \"bat\"\nhalf_extents = [1, 1, 1]\nmass = 1.0\n";
 
-struct BadScene {
-  std::string text;
-  int line;
-  std::string key;
-  std::string part;  ///< of the reason
-};
-
 void check_refused(const BadScene& bad) {
-  INFO(bad.text);
-  try {
-    (void)parse_scene(bad.text, "bad.toml");
-  } catch (const InputError& error) {
-    INFO(error.what());
-    CHECK(error.file() == "bad.toml");
-    CHECK(error.line() == bad.line);
-    CHECK(error.key() == bad.key);
-    CHECK(error.reason().find(bad.part) != std::string::npos);
-    return;
-  }
-  FAIL("was not refused");
+  tests::check_refused(
+      bad, [](const std::string& text, const char* file) { (void)parse_scene(text, file); });
 }
 
 const std::vector<BadScene> top_level = {

@@ -9,6 +9,7 @@
 #include "core/random.hpp"
 #include "core/reading/scene_reader.hpp"
 #include "tests/catch.hpp"
+#include "tests/core/refused.hpp"
 
 #include <array>
 #include <string>
@@ -17,6 +18,8 @@
 using namespace kairos;
 
 namespace {
+
+using tests::BadScene;
 
 class Draw {
  public:
@@ -74,26 +77,9 @@ const std::string far_post =
     "[[body]]\nname = \"far\"\nentity = \"wall\"\nhalf_extents = [0.1, 1, 0.1]\n"
     "position = [-3, 0, 0]\n";
 
-struct Bad {
-  std::string text;
-  int line;
-  std::string key;
-  std::string part;
-};
-
-void check_refused(const Bad& bad) {
-  INFO(bad.text);
-  try {
-    (void)Model(parse_scene(bad.text, "bad.toml"));
-  } catch (const InputError& error) {
-    INFO(error.what());
-    CHECK(error.file() == "bad.toml");
-    CHECK(error.line() == bad.line);
-    CHECK(error.key() == bad.key);
-    CHECK(error.reason().find(bad.part) != std::string::npos);
-    return;
-  }
-  FAIL("was not refused");
+void check_refused(const BadScene& bad) {
+  tests::check_refused(
+      bad, [](const std::string& text, const char* file) { (void)Model(parse_scene(text, file)); });
 }
 
 }  // namespace
@@ -210,7 +196,7 @@ TEST_CASE("joint: neighbours do not meet unless asked, and loops that say too mu
 }
 
 TEST_CASE("joint: what does not fit is refused by file, line and key", "[joint]") {
-  const std::vector<Bad> all = {
+  const std::vector<BadScene> all = {
       {bar + "[[joint]]\n", 7, "joint[0].kind", "missing"},
       {bar + "[[joint]]\nkind = \"glue\"\n", 8, "joint[0].kind", "ball"},
       {bar + "[[joint]]\nkind = \"ball\"\n", 7, "joint[0].bodies", "missing"},
@@ -263,7 +249,7 @@ TEST_CASE("joint: what does not fit is refused by file, line and key", "[joint]"
              "[[joint]]\nkind = \"ball\"\nname = \"j\"\nbodies = [\"bar\"]\nanchor = [0, 0, 0]\n",
        14, "joint.j.name", "already"},
   };
-  for (const Bad& bad : all) {
+  for (const BadScene& bad : all) {
     check_refused(bad);
   }
 }

@@ -1,5 +1,6 @@
 #include "core/schemes/event/driven_mode.hpp"
 
+#include "core/schemes/event/mode_guards.hpp"
 #include "core/schemes/shared/support.hpp"
 
 #include <algorithm>
@@ -13,8 +14,6 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Accelerations below this part of the largest are roundoff.
 constexpr double roundoff = 1e-12;
-/// What ends within this part of the window ends at once.
-constexpr double at_once = 1e-12;
 
 /// sum |c_k . axis| s^k.
 double most(const Polynomial<3>& p, const Vector3& axis, double s) {

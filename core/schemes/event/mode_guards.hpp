@@ -10,6 +10,9 @@
 namespace kairos {
 inline namespace core {
 
+/// Guards that act within this part of an epoch act at once.
+inline constexpr double at_once = 1e-12;
+
 /// Until when the patches of a group carry it, by patch, within `duration`, s: a ball's centre, a
 /// vertex, or the centre of pressure of two faces comes to the rim of one of them. Exact: motions
 /// are parabolas, and so is the way of a centre of pressure where the rest of the group hangs on

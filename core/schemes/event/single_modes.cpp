@@ -4,19 +4,13 @@
 #include "core/contacts/curved_slip.hpp"
 #include "core/schemes/event/driven_mode.hpp"
 #include "core/schemes/event/gathered_group.hpp"
+#include "core/schemes/event/mode_guards.hpp"
 
 #include <cmath>
 #include <limits>
 
 namespace kairos {
 inline namespace core {
-namespace {
-
-/// What ends within this part of an epoch ends at once.
-constexpr double at_once = 1e-12;
-
-}  // namespace
-
 /// One block on one face that is driven, with friction between them.
 bool EventModes::settle_driven(const Gathered& found, Instant t, const Adopt& adopt) {
   const BodyIndex surface = *found.driven;

@@ -1,0 +1,135 @@
+// What the motions of event-driven did, told to the ledger.
+
+#include "core/joint_system.hpp"
+#include "core/schemes/event/event_motions.hpp"
+
+#include <utility>
+
+namespace kairos {
+inline namespace core {
+
+void EventMotions::book_all(Instant t) {
+  for (Flow& flow : flows_) {
+    book(flow, t);
+  }
+}
+
+void EventMotions::book(Flow& flow, Instant t) {
+  const double duration = t - flow.booked;
+  if (!(duration > 0.0)) {
+    return;
+  }
+  const BodyIndex first = flow.island.bodies.front();
+  if (flow.carried) {
+    bring(first, t);
+    run_.account.carried(flow.island, t, booked_, now_);
+    booked_[first] = now_[first];
+    flow.booked = t;
+    return;
+  }
+  book_rubs(first, t);
+  // At its end a segment is where the stepper left it, which its motion tells up to roundoff.
+  const bool whole = !(of(first).end() - t > 0.0) && !bodies_[first].support;
+  for (std::size_t k = 0; k < flow.states.size(); ++k) {
+    const BodyIndex i = flow.island.bodies[k];
+    now_[i] = whole ? flow.states[k] : at(i, t);
+  }
+  const double roundoff = run_.options.roundoff ? new_roundoff(flow, t) : 0.0;
+  // What the motion of a top is off its closed form is truncation: polynomials are fitted to it.
+  const bool exact = flow.held || (flow.exact && !run_.model.tumbles(run_.model.island_of(first)));
+  Leg leg{flow.island, booked_, now_, field_forces_, exact, roundoff, riding_work(flow, t)};
+  if (flow.island.forces.empty()) {
+    run_.account.leg(leg);
+  } else {
+    for (std::size_t k = 0; k < flow.motions.size(); ++k) {
+      flow.motions[k] = of(flow.island.bodies[k]);
+    }
+    if (flow.island.joints != nullptr) {
+      leg.contact_work = whole ? run_.account.projected(flow.projection) : 0.0;
+      leg.riding_work = run_.account.joint_work(flow.island, flow.motions, flow.booked, duration) +
+                        (whole ? flow.projection.driven : 0.0);
+    }
+    run_.account.leg(leg, flow.motions, flow.booked, duration);
+  }
+  for (const BodyIndex i : flow.island.bodies) {
+    booked_[i] = now_[i];
+  }
+  flow.booked = t;
+}
+
+/// Friction takes what slides, belts and driven surfaces give what they carry. Forces are constant,
+/// and so are angular accelerations.
+void EventMotions::book_rubs(BodyIndex i, Instant t) {
+  for (Rub& rub : bodies_[i].rubs) {
+    const double h = t - rub.booked;
+    const BodyState to_a = at(rub.a, t);
+    const BodyState to_b = at(rub.b, t);
+    const auto way = [h](const BodyState& from, const BodyState& to, const Vector3& arm) {
+      const Vector3 turned = 0.5 * h * (from.twist.angular + to.twist.angular);
+      return Vector3((to.pose.position - from.pose.position) + turned.cross(arm));
+    };
+    const Vector3 way_a = way(rub.from_a, to_a, rub.arm_a);
+    const Vector3 way_b = way(rub.from_b, to_b, rub.arm_b);
+    const Vector3 belts = h * (rub.belt_b - rub.belt_a);
+    if (rub.curved) {
+      run_.ledger.add(EnergyLine::friction,
+                      rub.spent(t - rub.begun).x() - rub.spent(rub.booked - rub.begun).x());
+    } else if (rub.slides) {
+      run_.ledger.add(EnergyLine::friction, rub.along.dot((way_b - way_a) + belts));
+    }
+    if (!belts.isZero(0.0)) {
+      run_.ledger.add(EnergyLine::conveyor_and_hand, -rub.along.dot(belts));
+    }
+    if (rub.rides) {
+      // m (v1^2 - v0^2) / 2 - F.x, F what acts beside the plane.
+      const BodyState& from = run_.model.is_free(rub.b) ? rub.from_b : rub.from_a;
+      const BodyState& to = run_.model.is_free(rub.b) ? to_b : to_a;
+      run_.ledger.add(EnergyLine::driven_work, run_.account.gained(i, from, to) -
+                                                   (run_.model.gravity_force(i) + field_forces_[i])
+                                                       .dot(to.pose.position - from.pose.position));
+    } else if (run_.model.mobility(rub.a) == Mobility::driven) {
+      run_.ledger.add(EnergyLine::driven_work, rub.force.dot(way_a));
+    }
+    if (!rub.rides && run_.model.mobility(rub.b) == Mobility::driven) {
+      run_.ledger.add(EnergyLine::driven_work, -rub.force.dot(way_b));
+    }
+    rub.from_a = to_a;
+    rub.from_b = to_b;
+    rub.booked = t;
+  }
+}
+
+/// Of a driven surface since the ledger last looked, J: the normal force m a_s.n - F.n, integrated
+/// over the surface's displacement along n; F what is constant and what depends on the state.
+double EventMotions::riding_work(const Flow& flow, Instant t) {
+  const BodyIndex i = flow.island.bodies.front();
+  const std::optional<Support>& support = bodies_[i].support;
+  if (!support || run_.model.mobility(support->surface) != Mobility::driven) {
+    return 0.0;
+  }
+  const Vector3& n = support->normal;
+  const double v0 = n.dot(booked_[i].twist.linear);
+  const double v1 = n.dot(now_[i].twist.linear);
+  const double rise = n.dot(now_[i].pose.position - booked_[i].pose.position);
+  return 0.5 * flow.island.inertia[0].mass * (v1 - v0) * (v1 + v0) - n.dot(net_force(i)) * rise +
+         run_.account.bearing_work(run_.model.islands()[run_.model.island_of(i)].forces, of(i), n,
+                                   flow.booked, t - flow.booked);
+}
+
+/// Roundoff of the current segment since the ledger last looked, J.
+double EventMotions::new_roundoff(Flow& flow, Instant t) {
+  flow.replayed.resize(flow.launched.size());
+  if (!flow.stepper->replay(flow.island, t - of(flow.island.bodies.front()).start, flow.launched,
+                            flow.replayed)) {
+    return 0.0;
+  }
+  double sum = 0.0;
+  for (std::size_t k = 0; k < flow.replayed.size(); ++k) {
+    sum += roundoff_energy(flow.island.inertia[k].mass, flow.island.constant_force[k],
+                           now_[flow.island.bodies[k]], flow.replayed[k]);
+  }
+  return sum - std::exchange(flow.roundoff, sum);
+}
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,274 @@
+// Who is in touch with a group under `event-driven`, and what an impact finds there.
+
+#include "core/schemes/event/event_modes.hpp"
+#include "core/schemes/event/gathered_group.hpp"
+#include "core/schemes/event/mode_guards.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+double finite_radius(const Shape& shape) {
+  const double radius = bounding_radius(shape);
+  return std::isfinite(radius) ? radius : 0.0;
+}
+
+}  // namespace
+
+/// Acceleration without contact forces.
+Twist EventModes::load(BodyIndex i, const BodyState& state) const {
+  if (!run_.model.is_free(i)) {
+    return {};
+  }
+  const BodyInertia& inertia = run_.model.inertia(i);
+  Twist load{motions_.steady_force(i) / inertia.mass, Vector3::Zero()};
+  if (inertia.rotates) {
+    load.angular = angular_acceleration(inertia, state, Vector3::Zero());
+  }
+  return load;
+}
+
+/// So slow along the normal that what presses allows no hop worth the name.
+double EventModes::rest_speed(BodyIndex a, BodyIndex b, const BodyState& at_a,
+                              const BodyState& at_b, const Wish& wish) const {
+  const double tolerance = accumulation_.rest_tolerance(a, b, run_.model.restitution(a, b));
+  const double pressing = load(a, at_a).linear.norm() + load(b, at_b).linear.norm();
+  const double speeds = at_a.twist.linear.norm() + at_b.twist.linear.norm();
+  double slow = std::sqrt(2.0 * pressing * tolerance) + 16.0 * epsilon * speeds;
+  if (wish.unite && wish.remaining > 0.0) {
+    slow = std::max(slow, tolerance / wish.remaining);
+  }
+  return slow;
+}
+
+EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instant t,
+                                        const Wish& wish) {
+  Gathered found;
+  found.group.instant = at_once * run_.epoch;
+  const auto is_seed = [&](BodyIndex i) {
+    return std::find(seeds.begin(), seeds.end(), i) != seeds.end();
+  };
+  const auto state_of = [&](BodyIndex i) {
+    const bool known = is_seed(i) || run_.model.mobility(i) == Mobility::fixed;
+    return known ? motions_.now(i) : motions_.at(i, t);
+  };
+  const auto add = [&](BodyIndex i) {
+    const BodyState state = state_of(i);
+    found.bodies.push_back(i);
+    found.states.push_back(state);
+    found.group.bodies.push_back(group_body(run_.model.inertia(i), state.pose));
+    found.group.velocities.push_back(state.twist);
+    found.group.loads.push_back(load(i, state));
+    found.group.radius.push_back(finite_radius(run_.model.shape(i)));
+    found.group.round.push_back(std::holds_alternative<Sphere>(run_.model.shape(i)) ? 1 : 0);
+    if (run_.model.is_free(i)) {
+      const Island& island = run_.model.islands()[run_.model.island_of(i)];
+      if (island.joints != nullptr) {
+        found.refusal = "'" + run_.model.body(i).name + "' hangs on a joint";
+      } else if (island.bodies.size() > 1 || (!island.forces.empty() && !wish.impact)) {
+        found.refusal = "'" + run_.model.body(i).name + "' feels forces that are not constant";
+      }
+    } else if (run_.model.mobility(i) == Mobility::driven && !wish.impact) {
+      found.driven = i;
+    }
+  };
+  std::vector<BodyIndex> sorted(seeds.begin(), seeds.end());
+  std::sort(sorted.begin(), sorted.end(),
+            [&](BodyIndex i, BodyIndex j) { return run_.agenda.before(i, j); });
+  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  for (const BodyIndex i : sorted) {
+    add(i);
+  }
+  std::vector<BodyIndex> near;
+  for (std::size_t k = 0; k < found.bodies.size() && found.refusal.empty(); ++k) {
+    const BodyIndex i = found.bodies[k];
+    if (!run_.model.is_free(i)) {
+      continue;
+    }
+    near.clear();
+    predictor_.solids_near(i, near);
+    const std::vector<BodyIndex>& held = graph_.partners(i);
+    near.insert(near.end(), held.begin(), held.end());
+    std::sort(near.begin(), near.end(),
+              [&](BodyIndex x, BodyIndex y) { return run_.agenda.before(x, y); });
+    near.erase(std::unique(near.begin(), near.end()), near.end());
+    for (const BodyIndex j : near) {
+      const auto [a, b] = run_.agenda.before(i, j) ? std::pair{i, j} : std::pair{j, i};
+      if (std::find(found.pairs.begin(), found.pairs.end(), std::pair{a, b}) != found.pairs.end()) {
+        continue;
+      }
+      const BodyState at_a = state_of(a);
+      const BodyState at_b = state_of(b);
+      const double radii =
+          bounding_radius(run_.model.shape(a)) + bounding_radius(run_.model.shape(b));
+      const double reach = predictor_.touching_gap(a, b);
+      const bool joined = graph_.joins(a, b);
+      if (joined && !found.has(j)) {
+        add(j);  // whatever becomes of the pair, it must be told
+      }
+      if ((at_a.pose.position - at_b.pose.position).norm() > radii + reach) {
+        continue;
+      }
+      const ContactManifold manifold = run_.detector.manifold(
+          run_.model.shape(a), at_a.pose, run_.model.shape(b), at_b.pose, reach);
+      if (manifold.size == 0) {
+        continue;
+      }
+      const double slow = rest_speed(a, b, at_a, at_b, wish);
+      double least = infinity;
+      double most = -infinity;
+      for (std::size_t p = 0; p < manifold.size; ++p) {
+        const double rate =
+            normal_velocity({manifold.points[p].position, manifold.normal, 0.0}, at_a, at_b);
+        least = std::min(least, rate);
+        most = std::max(most, rate);
+      }
+      const bool struck = wish.impact && is_seed(a) && is_seed(b);
+      if (wish.impact ? least > slow || (wish.held_only && !joined && !struck)
+                      : least < -slow || most > slow) {
+        continue;  // an impact of its own, or parting
+      }
+      if (!found.has(j)) {
+        add(j);
+      }
+      found.pairs.emplace_back(a, b);
+      const Vector3& n = manifold.normal;
+      const double mu = run_.model.friction(a, b);
+      const Vector3 drift = mu > 0.0 ? Vector3(belt(b, n) - belt(a, n)) : Vector3(Vector3::Zero());
+      found.group.patches.push_back({found.place(a), found.place(b), manifold, slow, mu, drift});
+    }
+  }
+  return found;
+}
+
+std::vector<BodyIndex> EventModes::group(std::span<const BodyIndex> seeds) const {
+  std::vector<BodyIndex> bodies;
+  const auto add = [&](BodyIndex i) {
+    if (run_.model.is_free(i) && std::find(bodies.begin(), bodies.end(), i) == bodies.end()) {
+      bodies.push_back(i);
+    }
+  };
+  for (const BodyIndex i : seeds) {
+    add(i);
+  }
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    for (const BodyIndex j : graph_.partners(bodies[k])) {
+      add(j);
+    }
+  }
+  std::sort(bodies.begin(), bodies.end(),
+            [&](BodyIndex i, BodyIndex j) { return run_.agenda.before(i, j); });
+  return bodies;
+}
+
+std::vector<BodyIndex> EventModes::held_by(BodyIndex surface) const {
+  std::vector<BodyIndex> bodies;
+  for (const BodyIndex i : graph_.partners(surface)) {
+    if (run_.model.is_free(i)) {
+      bodies.push_back(i);
+    }
+  }
+  std::sort(bodies.begin(), bodies.end(),
+            [&](BodyIndex i, BodyIndex j) { return run_.agenda.before(i, j); });
+  return bodies;
+}
+
+void EventModes::bring_group(std::span<const BodyIndex> bodies, Instant t) {
+  for (const BodyIndex i : bodies) {
+    motions_.book(i, t);
+    motions_.bring(i, t);
+  }
+}
+
+// --- Impacts -----------------------------------------------------------------------------------
+
+EventModes::GroupImpact EventModes::impact_group(const BodyPair& pair, Instant t, bool all) {
+  const std::array<BodyIndex, 2> seeds{pair.first, pair.second};
+  Gathered found = gather(seeds, t, {.impact = true, .held_only = !all});
+  GroupImpact impact;
+  impact.refusal = std::move(found.refusal);
+  impact.bodies = std::move(found.bodies);
+  impact.pairs = std::move(found.pairs);
+  impact.system.bodies = std::move(found.group.bodies);
+  impact.velocities = std::move(found.group.velocities);
+  std::vector<double> restitution;
+  for (std::size_t p = 0; p < impact.pairs.size(); ++p) {
+    const GroupPatch& patch = found.group.patches[p];
+    for (std::size_t k = 0; k < patch.manifold.size; ++k) {
+      const ContactManifold::Point& point = patch.manifold.points[k];
+      impact.system.add(patch.a, patch.b, point.position, patch.manifold.normal);
+      if (impact.system.rate(impact.system.rows.back(), impact.velocities) > patch.rest_speed) {
+        impact.system.rows.pop_back();
+        continue;
+      }
+      impact.pair_of_row.push_back(p);
+      impact.gaps.push_back(point.gap);
+      restitution.push_back(run_.model.restitution(impact.pairs[p].first, impact.pairs[p].second));
+    }
+  }
+  impact.restitution = Eigen::Map<const Eigen::VectorXd>(
+      restitution.data(), static_cast<Eigen::Index>(restitution.size()));
+  return impact;
+}
+
+std::optional<EventModes::Approach> EventModes::approach(BodyIndex a, BodyIndex b) const {
+  const BodyState& at_a = motions_.now(a);
+  const BodyState& at_b = motions_.now(b);
+  const Shape& shape_a = run_.model.shape(a);
+  const Shape& shape_b = run_.model.shape(b);
+  const double slow = rest_speed(a, b, at_a, at_b, {});
+  const ContactManifold manifold =
+      run_.detector.manifold(shape_a, at_a.pose, shape_b, at_b.pose, predictor_.touching_gap(a, b));
+  if (manifold.size == 0) {
+    return std::nullopt;
+  }
+  const Overlap o = run_.detector.overlap(shape_a, at_a.pose, shape_b, at_b.pose);
+  Contact contact{o.point, o.normal, o.gap};
+  double rate = normal_velocity(contact, at_a, at_b);
+  if (rate >= -slow) {
+    for (std::size_t p = 0; p < manifold.size; ++p) {
+      const Contact corner{manifold.points[p].position, manifold.normal, manifold.points[p].gap};
+      const double at_corner = normal_velocity(corner, at_a, at_b);
+      if (at_corner < std::min(rate, -slow)) {
+        contact = corner;
+        rate = at_corner;
+      }
+    }
+  }
+  return rate < -slow ? std::optional(Approach{a, b, contact, -rate}) : std::nullopt;
+}
+
+std::optional<EventModes::Approach> EventModes::worst_approach(
+    std::span<const BodyIndex> bodies, std::span<const BodyPair> others) const {
+  std::vector<BodyPair> pairs(others.begin(), others.end());
+  for (const BodyIndex i : bodies) {
+    for (const BodyIndex j : graph_.partners(i)) {
+      pairs.push_back(run_.agenda.before(i, j) ? BodyPair{i, j} : BodyPair{j, i});
+    }
+  }
+  const auto by_name = [&](const BodyPair& x, const BodyPair& y) {
+    return x.first != y.first ? run_.agenda.before(x.first, y.first)
+                              : run_.agenda.before(x.second, y.second);
+  };
+  std::sort(pairs.begin(), pairs.end(), by_name);
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  std::optional<Approach> worst;
+  for (const auto& [a, b] : pairs) {
+    const std::optional<Approach> found = approach(a, b);
+    if (found && (!worst || found->speed > worst->speed)) {
+      worst = found;
+    }
+  }
+  return worst;
+}
+
+}  // namespace core
+}  // namespace kairos
