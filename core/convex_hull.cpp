@@ -242,21 +242,20 @@ ConvexHull convex_hull(std::span<const Vector3> points) {
   }
   const auto faces = polygons(points, Incremental(points).triangles());
   const MassProperties mass = mass_properties(points, fans(faces));
-  const bool keep = is_principal(mass.inertia);
+  const bool principal = is_principal(mass.inertia);
   ConvexHull hull;
   hull.centre = mass.centre;
-  hull.axes = keep ? Quaternion(Quaternion::Identity()) : mass.axes;
   auto polytope = std::make_shared<Polytope>();
   polytope->volume = mass.volume;
-  polytope->moments = keep ? Vector3(mass.inertia.diagonal()) : mass.moments;
+  polytope->axes = principal ? Quaternion(Quaternion::Identity()) : mass.axes;
+  polytope->moments = principal ? Vector3(mass.inertia.diagonal()) : mass.moments;
   std::map<Index, Index> place;
   for (const auto& polygon : faces) {
     std::vector<Index> corners;
     for (const Index i : polygon) {
       const auto [at, is_new] = place.try_emplace(i, static_cast<Index>(place.size()));
       if (is_new) {
-        const Vector3 x = points[i] - hull.centre;
-        polytope->vertices.push_back(keep ? x : Vector3(hull.axes.conjugate() * x));
+        polytope->vertices.emplace_back(points[i] - hull.centre);
       }
       corners.push_back(at->second);
     }

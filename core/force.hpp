@@ -23,10 +23,20 @@ struct Wrench {
 
 /// Inertia of one body of an island.
 struct BodyInertia {
-  double mass = 0.0;                    ///< kg, > 0
-  Vector3 principal = Vector3::Zero();  ///< principal moments in body axes, kg m^2
-  bool rotates = false;                 ///< false: orientation is not integrated at all
-  double bounding_radius = 0.0;         ///< of its shape about its origin, m
+  double mass = 0.0;                         ///< kg, > 0
+  Vector3 principal = Vector3::Zero();       ///< principal moments, kg m^2
+  bool rotates = false;                      ///< false: orientation is not integrated at all
+  double bounding_radius = 0.0;              ///< of its shape about its origin, m
+  Quaternion axes = Quaternion::Identity();  ///< the principal axes, in body axes
+
+  /// The principal axes of a body of orientation `q_WB` in the world.
+  [[nodiscard]] Quaternion principal_axes(const Quaternion& q_WB) const {
+    return axes.vec().isZero(0.0) ? q_WB : Quaternion(q_WB * axes);
+  }
+  /// I^-1 x of a body that turns, world frame.
+  [[nodiscard]] Vector3 inverse(const Quaternion& q_WB, const Vector3& x) const;
+  /// I^-1 of a body that turns, world frame, 1/(kg m^2).
+  [[nodiscard]] Matrix3 inverse(const Quaternion& q_WB) const;
 };
 
 /// Port: a force that depends on the state or on time (drag, spring, Magnus). Constant forces are

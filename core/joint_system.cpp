@@ -46,7 +46,7 @@ Vector3 inverse_inertia(const BodyInertia& inertia, const Quaternion& q, const V
   if (!inertia.rotates) {
     return Vector3::Zero();
   }
-  return q * (q.conjugate() * x).cwiseQuotient(inertia.principal);
+  return inertia.inverse(q, x);
 }
 
 }  // namespace

@@ -187,7 +187,7 @@ void Model::choose_rotation() {
                          (!is_sphere(shape(i)) || turned_by_force_[i] || rubs_[i]);
     rotates_.push_back(options_.leave_out_orientation ? matters : could);
     inertia_.push_back({is_free(i) ? b.mass : -1.0, is_free(i) ? b.inertia : Vector3::Zero().eval(),
-                        rotates_[i], is_free(i) ? bounding_radius(shape(i)) : 0.0});
+                        rotates_[i], is_free(i) ? bounding_radius(shape(i)) : 0.0, b.inertia_axes});
     if (is_free(i) && !rotates_[i]) {
       tally.add(
           "orientation is left out", b.name,
@@ -313,7 +313,7 @@ bool Model::keeps_constant_rate(BodyIndex i) const {
     return true;
   }
   const BodyState& s = body(i).initial;
-  const Vector3 w_B = s.pose.orientation.conjugate() * s.twist.angular;
+  const Vector3 w_B = inertia_[i].principal_axes(s.pose.orientation).conjugate() * s.twist.angular;
   const Vector3 spin = w_B.cross(inertia_[i].principal.cwiseProduct(w_B));
   const auto solid = [this, i](BodyIndex j) { return interacts(i, j) && !is_field(j); };
   for (BodyIndex j = 0; j < size(); ++j) {
@@ -372,7 +372,8 @@ double Model::kinetic_energy(BodyIndex i, const BodyState& state) const {
   if (!inertia.rotates) {
     return linear;
   }
-  const Vector3 w_B = state.pose.orientation.conjugate() * state.twist.angular;
+  const Vector3 w_B =
+      inertia.principal_axes(state.pose.orientation).conjugate() * state.twist.angular;
   return linear + 0.5 * w_B.dot(inertia.principal.cwiseProduct(w_B));
 }
 

@@ -39,18 +39,18 @@ struct Polytope {
   double extent = 0.0;              ///< greatest sum of the magnitudes of a vertex' coordinates, m
   double width = 0.0;               ///< least extent along the normal of a face, m
   double volume = 0.0;              ///< m^3
-  Vector3 moments = Vector3::Zero();  ///< of inertia for density 1, about the axes, kg m^2
+  Vector3 moments = Vector3::Zero();         ///< principal, of inertia for density 1, kg m^2
+  Quaternion axes = Quaternion::Identity();  ///< the principal axes, in those of the vertices
 };
 
-/// The convex hull of points, and where it was: a point x of the polytope was centre + axes x.
+/// The convex hull of points, and where it was: a point x of the polytope was centre + x.
 struct ConvexHull {
   std::shared_ptr<const Polytope> polytope;
-  Vector3 centre = Vector3::Zero();          ///< its centroid, frame of the points, m
-  Quaternion axes = Quaternion::Identity();  ///< from principal axes to those of the points
+  Vector3 centre = Vector3::Zero();  ///< its centroid, frame of the points, m
 };
 
 /// The hull of points, every decision exact (which vertices, which of them lie in one face). Axes
-/// that are principal to roundoff stay as they are. Throws `std::invalid_argument` where there is
+/// that are principal to roundoff are told as such. Throws `std::invalid_argument` where there is
 /// none with a volume: fewer than four points, a point, a line, a plane; numbers not finite.
 [[nodiscard]] ConvexHull convex_hull(std::span<const Vector3> points);
 

@@ -30,13 +30,14 @@ struct Body {
   std::shared_ptr<const Entity> entity;
   Shape shape;
   Bounds bounds = Bounds::shape;
-  double mass = -1.0;                 ///< kg; -1: infinite
-  Vector3 inertia = Vector3::Zero();  ///< principal moments, body axes, kg m^2
-  BodyState initial;                  ///< at t = 0
-  double restitution = 1.0;           ///< of a pair: see `Scene::restitution_combine`
-  double friction = 0.0;              ///< Coulomb's, >= 0 or infinite (rough); of a pair: see
-                                      ///< `Scene::friction_combine`
-  double G = 9.8;                     ///< m/s^2 or N, see `GravityMode`
+  double mass = -1.0;                                ///< kg; -1: infinite
+  Vector3 inertia = Vector3::Zero();                 ///< principal moments, kg m^2
+  Quaternion inertia_axes = Quaternion::Identity();  ///< the principal axes, in body axes
+  BodyState initial;                                 ///< at t = 0
+  double restitution = 1.0;  ///< of a pair: see `Scene::restitution_combine`
+  double friction = 0.0;     ///< Coulomb's, >= 0 or infinite (rough); of a pair: see
+                             ///< `Scene::friction_combine`
+  double G = 9.8;            ///< m/s^2 or N, see `GravityMode`
   CollisionType collision_type = CollisionType::square;
   Vector3 normal_B = Vector3::UnitY();  ///< of the reflecting face (5.5), body frame, unit
   double scale = 1.0;                   ///< the model's scale (7.4)

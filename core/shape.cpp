@@ -101,6 +101,11 @@ Vector3 solid_inertia(const Shape& shape, double mass) {
       shape);
 }
 
+Quaternion solid_axes(const Shape& shape) {
+  const auto* hull = std::get_if<Hull>(&shape);
+  return hull != nullptr ? hull->core->axes : Quaternion(Quaternion::Identity());
+}
+
 Box bounding_box(const Shape& shape) {
   return std::visit(
       Match{[](const Sphere& sphere) { return Box{Vector3::Constant(sphere.radius)}; },

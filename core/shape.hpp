@@ -61,9 +61,11 @@ using Shape = std::variant<Sphere, Box, HalfSpace, Capsule, Cylinder, Cone, Hull
 [[nodiscard]] double bounding_radius(const Shape& shape);
 /// Smallest full extent (a sphere's diameter, a box's thinnest side), m; infinite for a half-space.
 [[nodiscard]] double smallest_extent(const Shape& shape);
-/// Principal moments of inertia of the homogeneous solid about its origin, body axes, kg m^2; of a
+/// Principal moments of inertia of the homogeneous solid about its origin, kg m^2; of a
 /// hull without its rounding.
 [[nodiscard]] Vector3 solid_inertia(const Shape& shape, double mass);
+/// The axes of these moments, in body axes: its own but for a hull.
+[[nodiscard]] Quaternion solid_axes(const Shape& shape);
 /// The box of a shape along the body's axes, about its origin (thesis, 3.3). A half-space has none:
 /// throws.
 [[nodiscard]] Box bounding_box(const Shape& shape);

@@ -122,8 +122,7 @@ class ClosedForm final : public Stepper {
       Leg& leg = legs_[i];
       leg.tumbles = leg.rotates && !is_steady(island.inertia[i], states[i]);
       if (leg.tumbles) {
-        leg.top = FreeTop(island.inertia[i].principal, states[i].pose.orientation,
-                          states[i].twist.angular);
+        leg.top = FreeTop(island.inertia[i], states[i].pose.orientation, states[i].twist.angular);
         if (!leg.top.resolved()) {
           return "closed-form: a body turns about its middle axis but for less than doubles "
                  "resolve";

@@ -67,8 +67,9 @@ std::array<Vector3, 2> euler_derivatives(const Vector3& moments, const Vector3& 
 
 }  // namespace
 
-FreeTop::FreeTop(const Vector3& principal, const Quaternion& q_WB, const Vector3& w_W) {
-  const Vector3 w_B = q_WB.conjugate() * w_W;
+FreeTop::FreeTop(const BodyInertia& inertia, const Quaternion& q_WB, const Vector3& w_W) {
+  const Vector3& principal = inertia.principal;
+  const Vector3 w_B = inertia.principal_axes(q_WB).conjugate() * w_W;
   const Vector3 L_B = principal.cwiseProduct(w_B);
   const double twice_energy = w_B.dot(L_B);
   L_ = L_B.norm();
@@ -85,6 +86,9 @@ FreeTop::FreeTop(const Vector3& principal, const Quaternion& q_WB, const Vector3
   }
   sorted *= sorted.determinant();  // a mirrored order is turned back by reversing all axes
   body_to_sorted_ = Eigen::Quaterniond(sorted);
+  if (!inertia.axes.vec().isZero(0.0)) {
+    body_to_sorted_ = body_to_sorted_ * inertia.axes.conjugate();
+  }
   moments_ = (sorted * principal).cwiseAbs();
   const Vector3 w = sorted * w_B;
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/archive.hpp"
+#include "core/force.hpp"
 #include "core/motion.hpp"
 
 namespace kairos::integrators {
@@ -14,8 +15,8 @@ namespace kairos::integrators {
 class FreeTop {
  public:
   FreeTop() = default;
-  /// `principal`: moments in body axes, kg m^2; the state at time 0.
-  FreeTop(const Vector3& principal, const Quaternion& q_WB, const Vector3& w_W);
+  /// The state at time 0.
+  FreeTop(const BodyInertia& inertia, const Quaternion& q_WB, const Vector3& w_W);
 
   /// False where doubles do not resolve the motion: within about 1e-12 of the separatrix, a body
   /// that turns about its middle axis but for roundoff, whose flips no one can foretell.

@@ -88,7 +88,7 @@ class Splitting final : public Stepper {
     for (std::size_t i = 0; i < states.size(); ++i) {
       orientations_[i] = states[i].pose.orientation;
       if (island.inertia[i].rotates) {
-        momenta_[i] = angular_momentum(island.inertia[i].principal, states[i].pose.orientation,
+        momenta_[i] = angular_momentum(island.inertia[i], states[i].pose.orientation,
                                        states[i].twist.angular);
       }
     }
@@ -108,7 +108,7 @@ class Splitting final : public Stepper {
       if (inertia.rotates) {
         momenta_[i] += wrenches_[i].torque * h;
         states[i].twist.angular =
-            angular_velocity(inertia.principal, states[i].pose.orientation, momenta_[i]);
+            angular_velocity(inertia, states[i].pose.orientation, momenta_[i]);
       }
     }
   }
@@ -119,8 +119,7 @@ class Splitting final : public Stepper {
       BodyState& state = states[i];
       state.pose.position += state.twist.linear * h;
       if (inertia.rotates) {
-        state.pose.orientation =
-            split_top(inertia.principal, momenta_[i], h, state.pose.orientation);
+        state.pose.orientation = split_top(inertia, momenta_[i], h, state.pose.orientation);
       }
     }
   }

@@ -14,9 +14,14 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
-double spin_energy(const Vector3& moments, const BodyState& body) {
-  const Vector3 w_B = body.pose.orientation.conjugate() * body.twist.angular;
-  return 0.5 * w_B.dot(moments.cwiseProduct(w_B));
+/// Angular velocity along the principal axes, rad/s.
+Vector3 principal_rates(const BodyInertia& inertia, const BodyState& body) {
+  return inertia.principal_axes(body.pose.orientation).conjugate() * body.twist.angular;
+}
+
+double spin_energy(const BodyInertia& inertia, const BodyState& body) {
+  const Vector3 w = principal_rates(inertia, body);
+  return 0.5 * w.dot(inertia.principal.cwiseProduct(w));
 }
 
 }  // namespace
@@ -118,9 +123,9 @@ double RunGuard::most_spin_energy(const BodyState& body, BodyIndex i) const {
   if (free_top_[i] == 0) {
     return unknown;
   }
-  const Vector3& moments = model_->inertia(i).principal;
-  const Vector3 w_B = body.pose.orientation.conjugate() * body.twist.angular;
-  return moments.cwiseProduct(w_B).squaredNorm() / (2.0 * moments.minCoeff());
+  const BodyInertia& inertia = model_->inertia(i);
+  return inertia.principal.cwiseProduct(principal_rates(inertia, body)).squaredNorm() /
+         (2.0 * inertia.principal.minCoeff());
 }
 
 void RunGuard::check_spin(const BodyState& body, BodyIndex i, Instant t) {
@@ -130,7 +135,7 @@ void RunGuard::check_spin(const BodyState& body, BodyIndex i, Instant t) {
   if (most_energy_[i] == unknown) {
     most_energy_[i] = most_spin_energy(body, i);
   }
-  const double energy = spin_energy(model_->inertia(i).principal, body);
+  const double energy = spin_energy(model_->inertia(i), body);
   if (!(energy <= 2.0 * most_energy_[i])) {
     throw Broken{fmt::format(
         "unstable: at t = {} s '{}' turns with {:.3g} J, and its angular momentum allows {:.3g} J: "

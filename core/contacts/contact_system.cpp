@@ -13,8 +13,7 @@ GroupBody group_body(const BodyInertia& inertia, const Pose& pose) {
   }
   body.inverse_mass = 1.0 / inertia.mass;
   if (inertia.rotates) {
-    const Matrix3 R = pose.orientation.toRotationMatrix();
-    body.inverse_inertia = R * inertia.principal.cwiseInverse().asDiagonal() * R.transpose();
+    body.inverse_inertia = inertia.inverse(pose.orientation);
   }
   return body;
 }

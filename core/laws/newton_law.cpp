@@ -32,7 +32,7 @@ struct Side {
         turns(free && body.inertia.rotates),
         mass(body.inertia.mass),
         principal(body.inertia.principal.template cast<Real>()),
-        orientation(state.pose.orientation.template cast<Real>()),
+        axes(body.inertia.principal_axes(state.pose.orientation).template cast<Real>()),
         arm(contact.point.template cast<Real>() - state.pose.position.template cast<Real>()),
         unresolved(arm_roundoff(contact.point, state.pose.position)),
         v(state.twist.linear.template cast<Real>()),
@@ -40,14 +40,14 @@ struct Side {
 
   [[nodiscard]] Vector at_contact() const { return v + w.cross(arm); }
 
-  /// r x p in the body frame, along the principal axes, in two parts. What the coordinates cannot
+  /// r x p along the principal axes, in two parts. What the coordinates cannot
   /// tell from none is `unfelt`: it turns nothing, so that a symmetric patch does not.
   struct Moment {
     Vector felt;
     Vector unfelt = Vector::Zero();
   };
   [[nodiscard]] Moment moment(const Vector& p) const {
-    Moment m{orientation.conjugate() * Vector(arm.cross(p))};
+    Moment m{axes.conjugate() * Vector(arm.cross(p))};
     const Real none = unresolved * p.norm();
     for (int k = 0; k < 3; ++k) {
       if (m.felt[k] <= none && m.felt[k] >= -none) {
@@ -62,12 +62,12 @@ struct Side {
     if (!turns) {
       return Vector::Zero();
     }
-    return orientation * Vector(moment(p).felt.cwiseQuotient(principal));
+    return axes * Vector(moment(p).felt.cwiseQuotient(principal));
   }
 
   /// The part of the contact's velocity along n that is rotation about levers that are not felt.
   [[nodiscard]] Real unfelt(const Vector& n) const {
-    return turns ? moment(n).unfelt.dot(Vector(orientation.conjugate() * w)) : Real(0);
+    return turns ? moment(n).unfelt.dot(Vector(axes.conjugate() * w)) : Real(0);
   }
 
   /// n^T K n, K the inverse inertia that the contact point feels: 1/m + n.((I^-1 (r x n)) x r).
@@ -86,9 +86,9 @@ struct Side {
   bool turns;
   Real mass;
   Vector principal;
-  Eigen::Quaternion<Real> orientation;
-  Vector arm;         ///< from the origin to the contact
-  double unresolved;  ///< what its coordinates may be off by, m
+  Eigen::Quaternion<Real> axes;  ///< principal, in the world
+  Vector arm;                    ///< from the origin to the contact
+  double unresolved;             ///< what its coordinates may be off by, m
   Vector v;
   Vector w;
 };
@@ -124,9 +124,8 @@ double surplus(const BodyState& computed, const Side<long double>& exact) {
   const Vector dv = v - exact.v;
   long double energy = exact.mass * (v - 0.5L * dv).dot(dv);
   if (exact.turns) {
-    const Vector w =
-        exact.orientation.conjugate() * Vector(computed.twist.angular.cast<long double>());
-    const Vector dw = w - exact.orientation.conjugate() * exact.w;
+    const Vector w = exact.axes.conjugate() * Vector(computed.twist.angular.cast<long double>());
+    const Vector dw = w - exact.axes.conjugate() * exact.w;
     energy += exact.principal.cwiseProduct(w - 0.5L * dw).dot(dw);
   }
   return static_cast<double>(energy);
@@ -180,8 +179,8 @@ class NewtonLaw final : public ImpactLaw, public GroupLaw {
     Side<long double> of_a(a, before_a, contact);
     Side<long double> of_b(b, before_b, contact);
     // Of the exact law, which knows unit vectors.
-    of_a.orientation.normalize();
-    of_b.orientation.normalize();
+    of_a.axes.normalize();
+    of_b.axes.normalize();
     const auto n = contact.normal.cast<long double>().normalized().eval();
     const auto e = static_cast<long double>(contact.restitution);
     long double loss = 0.0L;

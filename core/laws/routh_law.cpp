@@ -18,7 +18,7 @@ struct Side {
         turns(free && body.inertia.rotates),
         mass(body.inertia.mass),
         principal(body.inertia.principal),
-        orientation(body.state.pose.orientation) {
+        principal_axes(body.inertia.principal_axes(body.state.pose.orientation)) {
     const Vector3& origin = body.state.pose.position;
     Vector3 arm = contact.point - origin;
     if (const auto* sphere = std::get_if<Sphere>(&body.body.shape);
@@ -29,14 +29,14 @@ struct Side {
     const double unresolved = 512.0 * std::numeric_limits<double>::epsilon() *
                               (arm.lpNorm<1>() + origin.lpNorm<Eigen::Infinity>());
     for (int k = 0; k < 3; ++k) {
-      const Vector3 lever = orientation.conjugate() * Vector3(arm.cross(axes.col(k)));
+      const Vector3 lever = principal_axes.conjugate() * Vector3(arm.cross(axes.col(k)));
       for (int axis = 0; axis < 3; ++axis) {
         levers(axis, k) = std::abs(lever[axis]) <= unresolved ? 0.0 : lever[axis];
       }
     }
     const Twist& twist = body.state.twist;
     velocity = axes.transpose() * twist.linear +
-               levers.transpose() * (orientation.conjugate() * twist.angular);
+               levers.transpose() * (principal_axes.conjugate() * twist.angular);
     if (!free && !twist.angular.isZero(0.0)) {
       velocity = axes.transpose() * (twist.linear + twist.angular.cross(arm));
     }
@@ -60,7 +60,7 @@ struct Side {
       twist.linear += axes * impulse / mass;
     }
     if (turns) {
-      twist.angular += orientation * Vector3((levers * impulse).cwiseQuotient(principal));
+      twist.angular += principal_axes * Vector3((levers * impulse).cwiseQuotient(principal));
     }
   }
 
@@ -68,10 +68,10 @@ struct Side {
   bool turns;
   double mass;
   Vector3 principal;
-  Quaternion orientation;
-  Matrix3 levers;    ///< r x axis, body frame, by column
-  Vector3 velocity;  ///< of the point that touches
-  Vector3 belt;      ///< of its surface beside that
+  Quaternion principal_axes;  ///< in the world
+  Matrix3 levers;             ///< r x axis, along the principal axes, by column
+  Vector3 velocity;           ///< of the point that touches
+  Vector3 belt;               ///< of its surface beside that
 };
 
 /// Normal first, then where it slides.

@@ -122,6 +122,7 @@ void read_inertia(const TableReader& table, Body& body) {
   }
   if (!item) {
     body.inertia = solid_inertia(body.shape, body.mass);
+    body.inertia_axes = solid_axes(body.shape);
     return;
   }
   body.inertia = item->vector(limits::inertia);
@@ -131,8 +132,6 @@ void read_inertia(const TableReader& table, Body& body) {
     item->fail("one moment exceeds the sum of the other two; allowed: what a rigid body can have");
   }
 }
-
-bool is_identity(const Quaternion& q) { return q.vec().isZero(0.0); }
 
 /// A key that this kind of body does not take.
 void refuse(const TableReader& table, std::string_view key, const std::string& reason) {
@@ -233,19 +232,12 @@ Body read_body(const Item& item, const BodyDefaults& defaults) {
   const EntityType& type = read_entity_type(table);
   refuse_unknown_keys(table, type);
   body.entity = make_entity(table, type);
-  const WrittenShape written = read_shape(table, defaults.directory);
-  body.shape = written.shape;
+  body.shape = read_shape(table, defaults.directory);
   body.bounds = read_bounds(table, body, defaults.bounds);
   if (const auto position = table.find("position")) {
     body.initial.pose.position = position->vector(limits::position);
   }
   body.initial.pose.orientation = read_orientation(table);
-  if (!is_identity(written.axes)) {
-    refuse(table, "drive",
-           "the hull's points are not told in its principal axes, in which it is driven; allowed: "
-           "points in these, or a body without a drive");
-    body.initial.pose.orientation = (body.initial.pose.orientation * written.axes).normalized();
-  }
   read_normal(table, body);
   const auto number = [&table](std::string_view key, const Range& range, double fallback) {
     const auto value = table.find(key);

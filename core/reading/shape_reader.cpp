@@ -78,7 +78,7 @@ std::vector<Vector3> points_of_file(const Item& item, const TableReader& table,
   return read_mesh(path.string(), unit ? unit->number(unit_range) : 1.0).mesh.vertices;
 }
 
-WrittenShape read_hull(const TableReader& table, const std::string& directory) {
+Shape read_hull(const TableReader& table, const std::string& directory) {
   const auto points = table.find("points");
   const auto file = table.find("file");
   if (points.has_value() == file.has_value()) {
@@ -98,8 +98,7 @@ WrittenShape read_hull(const TableReader& table, const std::string& directory) {
       source.fail(fmt::format("the hull is {} m thin; allowed: {}", hull.polytope->width,
                               limits::extent.text()));
     }
-    return {Hull{std::move(hull.polytope), rounding ? rounding->number(rounding_range) : 0.0},
-            hull.axes};
+    return Hull{std::move(hull.polytope), rounding ? rounding->number(rounding_range) : 0.0};
   } catch (const std::invalid_argument& error) {
     source.fail(error.what());
   }
@@ -107,7 +106,7 @@ WrittenShape read_hull(const TableReader& table, const std::string& directory) {
 
 }  // namespace
 
-WrittenShape read_shape(const TableReader& table, const std::string& directory) {
+Shape read_shape(const TableReader& table, const std::string& directory) {
   const ShapeKind& kind = shape_kind(table);
   for (const std::string_view key : size_keys) {
     if (table.has(key) &&
@@ -116,21 +115,21 @@ WrittenShape read_shape(const TableReader& table, const std::string& directory) 
     }
   }
   if (kind.name == "sphere") {
-    return {Sphere{extent(table, "radius")}};
+    return Sphere{extent(table, "radius")};
   }
   if (kind.name == "box") {
-    return {Box{table.need("half_extents", "an array of 3 numbers").vector(limits::extent)}};
+    return Box{table.need("half_extents", "an array of 3 numbers").vector(limits::extent)};
   }
   if (kind.name == "capsule") {
-    return {Capsule{extent(table, "radius"), extent(table, "length")}};
+    return Capsule{extent(table, "radius"), extent(table, "length")};
   }
   if (kind.name == "cylinder") {
-    return {Cylinder{extent(table, "radius"), extent(table, "length")}};
+    return Cylinder{extent(table, "radius"), extent(table, "length")};
   }
   if (kind.name == "cone") {
-    return {Cone{extent(table, "radius"), extent(table, "height")}};
+    return Cone{extent(table, "radius"), extent(table, "height")};
   }
-  return kind.name == "hull" ? read_hull(table, directory) : WrittenShape{HalfSpace{}};
+  return kind.name == "hull" ? read_hull(table, directory) : Shape{HalfSpace{}};
 }
 
 }  // namespace core

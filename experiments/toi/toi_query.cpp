@@ -117,9 +117,7 @@ class ToiQueryFormat::Body {
   }
 
   [[nodiscard]] Motion motion(double duration) const {
-    const bool turned = !axes_.vec().isZero(0.0);
-    const Pose pose{vector(p),
-                    turned ? Quaternion((orientation() * axes_).normalized()) : orientation()};
+    const Pose pose{vector(p), orientation()};
     const Twist twist{vector(v), vector(w)};
     const Vector3 acceleration = vector(a);
     refuse(columns_.name[v], why_too_far(pose, twist, acceleration, duration));
@@ -146,8 +144,7 @@ class ToiQueryFormat::Body {
     return q_WB;
   }
 
-  /// Of points "x y z; x y z; ...", rounded by hx. They keep their axes: the pose is theirs, but
-  /// for the position, which is that of the centroid.
+  /// Of points "x y z; x y z; ...", rounded by hx. The position is that of their hull's centroid.
   [[nodiscard]] Shape hull() const {
     if (columns_.points == CsvColumns::absent) {
       throw BadField{columns_.shape_name,
@@ -165,7 +162,6 @@ class ToiQueryFormat::Body {
     try {
       ConvexHull found = convex_hull(*points);
       refuse(columns_.points_name, why_no_extent(found.polytope->width));
-      axes_ = found.axes;
       return Hull{std::move(found.polytope), rounding};
     } catch (const std::exception& error) {
       throw BadField{columns_.points_name, error.what()};
@@ -174,7 +170,6 @@ class ToiQueryFormat::Body {
 
   const BodyColumns& columns_;
   const std::vector<std::string_view>& fields_;
-  mutable Quaternion axes_ = Quaternion::Identity();  ///< of a hull: from its own to its points'
 };
 
 std::string_view ToiQueryFormat::id(std::string_view row, Scratch& scratch) const {

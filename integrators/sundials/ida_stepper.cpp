@@ -65,9 +65,7 @@ struct ConstrainedSystem {
       Eigen::Map<Vector3>(rate.data() + slot.offset + IslandOde::position) +=
           wrenches[k].force / inertia.mass;
       if (slot.rotates) {
-        const Quaternion& q = states[k].pose.orientation;
-        const Vector3 turn =
-            q * (q.conjugate() * wrenches[k].torque).cwiseQuotient(inertia.principal);
+        const Vector3 turn = inertia.inverse(states[k].pose.orientation, wrenches[k].torque);
         // Linear in the quaternion as it is, not as normalised for the forces.
         const std::size_t at = slot.offset + IslandOde::quaternion;
         Eigen::Map<Vector4>(rate.data() + at) =

@@ -194,7 +194,7 @@ TEST_CASE("a hull forgets what is not a vertex, and refuses what is flat", "[con
   CHECK(hull.polytope->vertices.size() == 8);
   CHECK(hull.polytope->faces.size() == 6);
   CHECK(hull.polytope->edges.size() == 12);
-  CHECK(hull.axes.vec().isZero(0.0));
+  CHECK(hull.polytope->axes.vec().isZero(0.0));
   CHECK_THROWS_WITH(convex_hull(std::vector<Vector3>(9, Vector3(1, 2, 3))),
                     Catch::Matchers::Contains("all points are one"));
   CHECK_THROWS_WITH(

@@ -45,9 +45,10 @@ struct Drifts {
 
 Drifts run_free_top(Stepper& stepper, double duration, double h) {
   const Island island = flipping_box();
+  const BodyInertia& inertia = island.inertia[0];
   std::vector<BodyState> states{flipping_state()};
   stepper.start(island, Instant{}, states);
-  const Vector3 L0 = angular_momentum(moments, states[0].pose.orientation, states[0].twist.angular);
+  const Vector3 L0 = angular_momentum(inertia, states[0].pose.orientation, states[0].twist.angular);
   const double E0 = rotational_energy(states[0]);
   Drifts drifts;
   double side = 1.0;
@@ -57,7 +58,7 @@ Drifts run_free_top(Stepper& stepper, double duration, double h) {
     REQUIRE(result.ok);
     t = t + result.advanced;
     const Vector3 L =
-        angular_momentum(moments, states[0].pose.orientation, states[0].twist.angular);
+        angular_momentum(inertia, states[0].pose.orientation, states[0].twist.angular);
     drifts.momentum = std::max(drifts.momentum, (L - L0).norm() / L0.norm());
     drifts.energy = std::max(drifts.energy, std::abs(rotational_energy(states[0]) / E0 - 1.0));
     const double now = (states[0].pose.orientation * Vector3::UnitY()).dot(L0) > 0.0 ? 1.0 : -1.0;

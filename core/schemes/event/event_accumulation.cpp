@@ -53,11 +53,7 @@ struct Side {
     return state.twist.linear + state.twist.angular.cross(arm);
   }
   [[nodiscard]] Vector3 turned_by(const Vector3& torque) const {
-    if (!rotates) {
-      return Vector3::Zero();
-    }
-    const Quaternion& q = state.pose.orientation;
-    return q * Vector3((q.conjugate() * torque).cwiseQuotient(inertia.principal));
+    return rotates ? inertia.inverse(state.pose.orientation, torque) : Vector3(Vector3::Zero());
   }
 
   BodyIndex body;

@@ -48,8 +48,8 @@ struct StruckIsland {
     const Pose& pose = states[k].pose;
     response[k].linear += impulse / inertia.mass;
     if (inertia.rotates) {
-      const Vector3 moment = pose.orientation.conjugate() * (point - pose.position).cross(impulse);
-      response[k].angular += pose.orientation * moment.cwiseQuotient(inertia.principal);
+      response[k].angular +=
+          inertia.inverse(pose.orientation, (point - pose.position).cross(impulse));
     }
   }
   void pass_on(Instant t) {

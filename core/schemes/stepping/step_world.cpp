@@ -189,8 +189,7 @@ Matrix3 StepWorld::inverse_inertia(BodyIndex i, const Quaternion& q) const {
   if (!run_.model.is_free(i) || !run_.model.rotates(i)) {
     return Matrix3::Zero();
   }
-  const Matrix3 R = q.toRotationMatrix();
-  return R * run_.model.inertia(i).principal.cwiseInverse().asDiagonal() * R.transpose();
+  return run_.model.inertia(i).inverse(q);
 }
 
 void StepWorld::end_step() {
