@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
+#include <tuple>
 
 namespace kairos {
 inline namespace core {
@@ -63,10 +65,23 @@ void Model::build_joints(const std::vector<std::size_t>& place) {
     const BodyIndex one = a_is_free ? *joint.a.body : *joint.b.body;
     of_island[island_of_[one]].push_back({joint, side(joint.a), side(joint.b)});
   }
+  const auto key = [this](const Joint& joint) {
+    const auto name = [this](const JointSide& at) {
+      return at.body ? std::string_view(body(*at.body).name) : std::string_view();
+    };
+    const Vector3 &a = joint.a.point, &b = joint.b.point;
+    return std::tuple(name(joint.a), name(joint.b), joint.kind, a.x(), a.y(), a.z(), b.x(), b.y(),
+                      b.z());
+  };
   for (std::size_t k = 0; k < islands_.size(); ++k) {
     if (of_island[k].empty()) {
       continue;
     }
+    // The order of a file changes no bit.
+    std::stable_sort(of_island[k].begin(), of_island[k].end(),
+                     [&](const JointSystem::Placed& a, const JointSystem::Placed& b) {
+                       return key(a.joint) < key(b.joint);
+                     });
     Island& island = islands_[k];
     auto joints = std::make_shared<const JointSystem>(std::move(of_island[k]), island.inertia);
     island_forces_.push_back(std::make_shared<const JointForce>(joints));

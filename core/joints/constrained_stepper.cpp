@@ -104,6 +104,12 @@ class ConstrainedStepper final : public Stepper {
     const JointSystem& joints = *island.joints;
     const Instant end = t + h_;
     const double drift = joints.residual(end, states);
+    if (drift > joints.size()) {
+      result.ok = false;
+      result.reason =
+          "a step ends farther off the joints than they are long; a shorter step may help";
+      return result;
+    }
     const JointProjection positions = joints.project_positions(end, states, island.constant_force);
     if (!positions.converged) {
       result.ok = false;
