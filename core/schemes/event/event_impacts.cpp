@@ -273,8 +273,9 @@ bool EventContacts::strike_group(const BodyPair& pair, double approach, Instant 
   return true;
 }
 
-/// An impact of each pair that took an impulse, that which began it first; its contact is where
-/// their impulses act together.
+/// An impact of each pair that took an impulse, that which began it first; its contact is where the
+/// impulses of what approached act together, which leaves at a restitution of that, or else where
+/// all do: what merely rested is held by what the others do to it.
 void EventContacts::tell_group(const EventModes::GroupImpact& impact,
                                const Eigen::VectorXd& impulses, std::span<const BodyState> before,
                                const BodyPair& first, Instant t) {
@@ -293,28 +294,37 @@ void EventContacts::tell_group(const EventModes::GroupImpact& impact,
   const auto tell = [&](std::size_t p) {
     const auto [a, b] = impact.pairs[p];
     Event event{.time = t, .kind = EventKind::impact, .a = a, .b = b};
-    double total = 0.0;
-    Vector3 point = Vector3::Zero();
+    struct Centre {
+      double total = 0.0;
+      Vector3 sum = Vector3::Zero();
+    } of_all, of_approaching;
     for (std::size_t r = 0; r < impact.pair_of_row.size(); ++r) {
       const double share = impulses[static_cast<Eigen::Index>(r)];
-      if (impact.pair_of_row[r] == p && share > 0.0) {
-        const ContactRow& row = impact.system.rows[r];
-        total += share;
-        point += share * (impact.system.bodies[row.a].position + row.arm_a);
-        event.contact.normal = row.direction;
-        event.contact.gap = impact.gaps[r];
+      if (impact.pair_of_row[r] != p || !(share > 0.0)) {
+        continue;
       }
+      const ContactRow& row = impact.system.rows[r];
+      const bool approaches = impact.system.rate(row, impact.velocities) < 0.0;
+      for (Centre* centre : {&of_all, approaches ? &of_approaching : nullptr}) {
+        if (centre != nullptr) {
+          centre->total += share;
+          centre->sum += share * (impact.system.bodies[row.a].position + row.arm_a);
+        }
+      }
+      event.contact.normal = row.direction;
+      event.contact.gap = impact.gaps[r];
     }
-    if (total == 0.0) {
+    if (of_all.total == 0.0) {
       return;
     }
+    const Centre& centre = of_approaching.total > 0.0 ? of_approaching : of_all;
     const bool only_handed_on =
         (state(a).twist.linear - motions_.now(a).twist.linear).norm() <= resolved &&
         (state(b).twist.linear - motions_.now(b).twist.linear).norm() <= resolved;
     if (only_handed_on && !is_first(impact.pairs[p])) {
       return;
     }
-    event.contact.point = point / total;
+    event.contact.point = centre.sum / centre.total;
     event.contact.restitution = run_.model.restitution(a, b);
     event.contact.friction = run_.model.friction(a, b);
     event.before_a = state(a);
