@@ -154,7 +154,8 @@ class Builder {
     }
     if (chance(0.3)) {
       const double s = size();
-      ball({x, y + 2.0 * r + s + random_.uniform(0.0, 0.2), 0.0}, s);
+      const double above = y + 2.0 * r + s + random_.uniform(0.0, 0.2);
+      ball({x, std::max(above, 1.5 * s * (1.0 + steep) + std::abs(x) * steep), 0.0}, s);
     }
   }
 
@@ -187,7 +188,9 @@ class Builder {
     }
     if (chance(0.3)) {
       const double s = size();
-      ball(s * normal + (r * std::sqrt(2.0) + s + 0.1) * down, s);
+      const double along = r * std::sqrt(2.0) + s + 0.1;
+      ball(s * normal + along * down, s);
+      scene_.bodies[1].position = std::max(3.0, along + 1.1 * s) * down;  // room for both
     }
   }
 
