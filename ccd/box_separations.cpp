@@ -1,5 +1,6 @@
 #include "ccd/relative_boxes.hpp"
 #include "ccd/roundoff.hpp"
+#include "core/circular.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -163,7 +164,7 @@ bool edges_apart(const RelativeBoxes& s, int i, int j, double error) {
   if (!(size > 0.0)) {
     return false;
   }
-  const double length = std::hypot(x / size, y / size);
+  const double length = hypotenuse(x / size, y / size);
   Vector3 n = Vector3::Zero();
   n[k] = x / size / length;
   n[l] = y / size / length;

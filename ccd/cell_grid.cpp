@@ -1,5 +1,7 @@
 #include "ccd/cell_grid.hpp"
 
+#include "core/exponential.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -49,7 +51,7 @@ CellLayout::CellLayout(const Model& model, double tolerance) {
   margin = radius / 16.0;
   const double least = 2.0 * (radius + slack + margin);
   const Vector3 size = (high - low).cwiseMax(least);
-  width = std::max(least, std::cbrt(size.prod() * bodies_to_a_cell / n));
+  width = std::max(least, cube_root(size.prod() * bodies_to_a_cell / n));
   per_width = 1.0 / width;
   farthest = 0x1p36 * margin;
   // Not more cells than bodies call for: along the longest axis they then coincide.

@@ -1,6 +1,7 @@
 #include "ccd/convex_core.hpp"
 
 #include "ccd/roundoff.hpp"
+#include "core/circular.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -58,7 +59,7 @@ ConvexCore ConvexCore::cylinder(double radius, double half, double rounding) {
   core.kind_ = Kind::cylinder;
   core.sizes_ = {radius, half, half};
   core.rounding_ = rounding;
-  core.radius_ = std::hypot(radius, half) * (1.0 + 4.0 * u);
+  core.radius_ = hypotenuse(radius, half) * (1.0 + 4.0 * u);
   core.extent_ = half + std::sqrt(2.0) * radius;
   core.width_ = 2.0 * std::min(radius, half);
   return core;
@@ -69,9 +70,9 @@ ConvexCore ConvexCore::cone(double radius, double height, double rounding) {
   core.kind_ = Kind::cone;
   core.sizes_ = {radius, 0.25 * height, 0.75 * height};
   core.rounding_ = rounding;
-  core.radius_ = std::max(0.75 * height, std::hypot(radius, 0.25 * height)) * (1.0 + 4.0 * u);
+  core.radius_ = std::max(0.75 * height, hypotenuse(radius, 0.25 * height)) * (1.0 + 4.0 * u);
   core.extent_ = std::max(0.75 * height, 0.25 * height + std::sqrt(2.0) * radius);
-  core.width_ = std::min(height, 2.0 * radius * height / std::hypot(radius, height));
+  core.width_ = std::min(height, 2.0 * radius * height / hypotenuse(radius, height));
   return core;
 }
 

@@ -2,6 +2,7 @@
 
 #include "ccd/nearest_points.hpp"
 #include "ccd/roundoff.hpp"
+#include "core/circular.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -39,10 +40,10 @@ template <typename Visit>
 void for_each_corner(const ConvexCore& core, const Vector3& m, const Visit& visit) {
   const Vector3& size = core.sizes();
   const auto rim = [&](double y) {
-    const double first = std::atan2(m.z(), m.x());
+    const double first = arc_tangent(m.z(), m.x());
     for (int k = 0; k < around; ++k) {
       const double angle = first + 2.0 * std::numbers::pi * k / around;
-      visit(Vector3(size.x() * std::cos(angle), y, size.x() * std::sin(angle)));
+      visit(Vector3(size.x() * cosine(angle), y, size.x() * sine(angle)));
     }
   };
   switch (core.kind()) {

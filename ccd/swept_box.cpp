@@ -3,6 +3,7 @@
 #include "ccd/relative_boxes.hpp"
 #include "ccd/rotation_matrix.hpp"
 #include "ccd/roundoff.hpp"
+#include "core/circular.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -53,12 +54,12 @@ double turning_extent(const Box& box, const Motion& motion, double s0, double s1
   const Vector3 n_B = motion.orientation(at).conjugate() * n;
   double extent = 0.0;
   for (int k = 0; k < 3; ++k) {
-    double cosine = std::min(1.0, std::abs(n_B[k]));
+    double part = std::min(1.0, std::abs(n_B[k]));
     if (theta > 0.0) {
-      const double phi = std::acos(cosine) - theta * (1.0 + 1e-12);
-      cosine = phi > 0.0 ? std::cos(phi) : 1.0;
+      const double phi = arc_cosine(part) - theta * (1.0 + 1e-12);
+      part = phi > 0.0 ? cosine(phi) : 1.0;
     }
-    extent += box.half_extents[k] * std::min(1.0, cosine + 32.0 * u);
+    extent += box.half_extents[k] * std::min(1.0, part + 32.0 * u);
   }
   return std::min(extent, box.half_extents.norm()) * (1.0 + 8.0 * u);
 }

@@ -1,6 +1,7 @@
 #include "core/mass_properties.hpp"
 
 #include "core/error.hpp"
+#include "core/exponential.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
@@ -112,7 +113,7 @@ MassProperties mass_properties(std::span<const Vector3> vertices,
   // Of the sum of that many signed volumes, relative to their size.
   const double roundoff =
       64.0 * std::numeric_limits<double>::epsilon() * static_cast<double>(triangles.size());
-  if (!(std::abs(rough.volume) > roundoff * std::pow(extent, 3))) {
+  if (!(std::abs(rough.volume) > roundoff * power(extent, 3))) {
     refuse("encloses no volume");
   }
   if (rough.volume < 0.0) {
@@ -126,7 +127,7 @@ MassProperties mass_properties(std::span<const Vector3> vertices,
   choose_axes(solid);
   // No mass distribution has a moment larger than the sum of the other two.
   const double excess = 2.0 * solid.moments.maxCoeff() - solid.moments.sum();
-  if (!(solid.moments.minCoeff() > 0.0) || excess > roundoff * std::pow(extent, 5)) {
+  if (!(solid.moments.minCoeff() > 0.0) || excess > roundoff * power(extent, 5)) {
     refuse("crosses itself: its moments of inertia are those of no solid");
   }
   return solid;

@@ -1,5 +1,6 @@
 #include "core/mesh_shapes.hpp"
 
+#include "core/circular.hpp"
 #include "core/error.hpp"
 
 #include <algorithm>
@@ -65,9 +66,8 @@ MeshData torus_mesh(double radius, double tube_radius, int around, int across) {
     const double u = 2.0 * pi * i / around;
     for (int j = 0; j < across; ++j) {
       const double v = 2.0 * pi * j / across;
-      const double from_axis = radius + tube_radius * std::cos(v);
-      mesh.vertices.emplace_back(from_axis * std::cos(u), from_axis * std::sin(u),
-                                 tube_radius * std::sin(v));
+      const double from_axis = radius + tube_radius * cosine(v);
+      mesh.vertices.emplace_back(from_axis * cosine(u), from_axis * sine(u), tube_radius * sine(v));
     }
   }
   const auto at = [&](int i, int j) {
@@ -101,9 +101,8 @@ MeshData bumpy_sphere_mesh(int rows, int columns, double height) {
     const double v = pi * i / rows;
     for (int j = 0; j < columns; ++j) {
       const double u = 2.0 * pi * j / columns;
-      const double r = 1.0 + height * std::sin(5.0 * u) * std::sin(4.0 * v);
-      mesh.vertices.emplace_back(r * std::sin(v) * std::cos(u), r * std::sin(v) * std::sin(u),
-                                 r * std::cos(v));
+      const double r = 1.0 + height * sine(5.0 * u) * sine(4.0 * v);
+      mesh.vertices.emplace_back(r * sine(v) * cosine(u), r * sine(v) * sine(u), r * cosine(v));
     }
   }
   const auto at = [&](int i, int j) {

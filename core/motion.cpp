@@ -1,5 +1,8 @@
 #include "core/motion.hpp"
 
+#include "core/circular.hpp"
+#include "core/exponential.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,7 +25,7 @@ double magnitude(const Polynomial<Dim>& p, double reach, int first) {
   for (int k = p.degree(); k >= first; --k) {
     sum = sum * reach + p[k].norm();
   }
-  return sum * std::pow(reach, first);
+  return sum * power(reach, first);
 }
 
 /// Bound of the rounding error of every Bernstein coefficient on [s0, s1]: a Taylor shift, a
@@ -151,15 +154,16 @@ Quaternion Motion::orientation(double s) const {
         return q;
       }
       const Angle half = half_angle(w, rate, s);
-      double sine = std::sin(half.high);
-      double cosine = std::cos(half.high);
-      const double sine_high = sine;
+      const SineCosine high = sine_cosine(half.high);
+      double sine = high.sine;
+      double cosine = high.cosine;
       if (std::abs(half.low) > first_order) {  // beyond some 1e8 rad
-        sine = sine * std::cos(half.low) + cosine * std::sin(half.low);
-        cosine = cosine * std::cos(half.low) - sine_high * std::sin(half.low);
+        const SineCosine low = sine_cosine(half.low);
+        sine = high.sine * low.cosine + high.cosine * low.sine;
+        cosine = high.cosine * low.cosine - high.sine * low.sine;
       } else {
-        sine += cosine * half.low;
-        cosine -= sine_high * half.low;
+        sine += high.cosine * half.low;
+        cosine -= high.sine * half.low;
       }
       const double k = sine / rate;
       return Quaternion(cosine, k * w.x(), k * w.y(), k * w.z()) * q;

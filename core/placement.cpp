@@ -1,5 +1,6 @@
 #include "core/placement.hpp"
 
+#include "core/exponential.hpp"
 #include "core/random.hpp"
 
 #include <algorithm>
@@ -52,7 +53,7 @@ class Cells {
   Cells(const Region& region, double greatest_radius, std::size_t count)
       : lowest_(region.lowest), next_(count, none) {
     const Vector3 size = region.highest - region.lowest;
-    const double share = std::cbrt(size.prod() / static_cast<double>(count));
+    const double share = cube_root(size.prod() / static_cast<double>(count));
     width_ = std::max(2.0 * greatest_radius, share);
     std::size_t cells = 1;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -1,5 +1,7 @@
 #include "core/pose.hpp"
 
+#include "core/circular.hpp"
+
 #include <cmath>
 
 namespace kairos {
@@ -9,8 +11,9 @@ Quaternion rotate(const Vector3& rotation_W, const Quaternion& q_WB) {
   const double angle = rotation_W.norm();
   const double half = 0.5 * angle;
   // sin(angle/2) / angle, which tends to 1/2; the quotient keeps full precision down to underflow.
-  const double k = angle > 0.0 ? std::sin(half) / angle : 0.5;
-  const Quaternion turn(std::cos(half), k * rotation_W.x(), k * rotation_W.y(), k * rotation_W.z());
+  const SineCosine at = sine_cosine(half);
+  const double k = angle > 0.0 ? at.sine / angle : 0.5;
+  const Quaternion turn(at.cosine, k * rotation_W.x(), k * rotation_W.y(), k * rotation_W.z());
   return turn * q_WB;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/circular.hpp"
+#include "core/exponential.hpp"
 #include "core/pose.hpp"
 
 #include <array>
@@ -52,7 +54,7 @@ class Random {
   double uniform(double lowest, double highest) { return lowest + (highest - lowest) * uniform(); }
   /// Uniform in the logarithm, lowest and highest > 0.
   double log_uniform(double lowest, double highest) {
-    return lowest * std::exp(uniform() * std::log(highest / lowest));
+    return lowest * exponential(uniform() * logarithm(highest / lowest));
   }
   /// Uniform in {0, ..., count - 1}, without bias; count > 0.
   std::uint64_t below(std::uint64_t count) {
@@ -66,15 +68,15 @@ class Random {
   /// Standard normal: Box and Muller's transform; one draw of two is thrown away, so that every
   /// call takes two indices whatever came before.
   double normal() {
-    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
-    return radius * std::cos(2.0 * std::numbers::pi * uniform());
+    const double radius = std::sqrt(-2.0 * logarithm(1.0 - uniform()));
+    return radius * cosine(2.0 * std::numbers::pi * uniform());
   }
   /// Uniform on the unit sphere.
   Vector3 direction() {
     const double z = uniform(-1.0, 1.0);
     const double angle = 2.0 * std::numbers::pi * uniform();
     const double radius = std::sqrt(std::max(0.0, 1.0 - z * z));
-    return {radius * std::cos(angle), radius * std::sin(angle), z};
+    return {radius * cosine(angle), radius * sine(angle), z};
   }
   /// Uniform over all orientations [Shoemake1992].
   Quaternion orientation() {
@@ -83,8 +85,7 @@ class Random {
     const double b = 2.0 * std::numbers::pi * uniform();
     const double p = std::sqrt(1.0 - u);
     const double q = std::sqrt(u);
-    return Quaternion(q * std::cos(b), p * std::sin(a), p * std::cos(a), q * std::sin(b))
-        .normalized();
+    return Quaternion(q * cosine(b), p * sine(a), p * cosine(a), q * sine(b)).normalized();
   }
 
  private:

@@ -1,5 +1,6 @@
 #include "core/shape.hpp"
 
+#include "core/circular.hpp"
 #include "core/error.hpp"
 
 #include <algorithm>
@@ -50,9 +51,9 @@ double bounding_radius(const Shape& shape) {
             [](const Box& box) { return box.half_extents.norm(); },
             [](const HalfSpace&) { return infinity; },
             [](const Capsule& capsule) { return 0.5 * capsule.length + capsule.radius; },
-            [](const Cylinder& c) { return std::hypot(c.radius, 0.5 * c.length); },
+            [](const Cylinder& c) { return hypotenuse(c.radius, 0.5 * c.length); },
             [](const Cone& cone) {
-              return std::max(0.75 * cone.height, std::hypot(cone.radius, 0.25 * cone.height));
+              return std::max(0.75 * cone.height, hypotenuse(cone.radius, 0.25 * cone.height));
             },
             [](const Hull& hull) { return hull.core->radius + hull.rounding; }},
       shape);
@@ -66,7 +67,7 @@ double smallest_extent(const Shape& shape) {
             [](const Capsule& capsule) { return 2.0 * capsule.radius; },
             [](const Cylinder& c) { return std::min(2.0 * c.radius, c.length); },
             [](const Cone& cone) {  // between the base's rim and the side across from it
-              const double side = std::hypot(cone.radius, cone.height);
+              const double side = hypotenuse(cone.radius, cone.height);
               return std::min(cone.height, 2.0 * cone.radius * cone.height / side);
             },
             [](const Hull& hull) { return hull.core->width + 2.0 * hull.rounding; }},

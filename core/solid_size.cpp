@@ -1,5 +1,8 @@
 #include "core/solid_size.hpp"
 
+#include "core/circular.hpp"
+#include "core/exponential.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -47,7 +50,7 @@ double mean_curvature(const Polytope& polytope) {
     }
     if (found == 2) {
       const double angle =
-          std::atan2(normals[0].cross(normals[1]).norm(), normals[0].dot(normals[1]));
+          arc_tangent(normals[0].cross(normals[1]).norm(), normals[0].dot(normals[1]));
       sum += 0.5 * angle * (polytope.vertices[to] - polytope.vertices[from]).norm();
     }
   }
@@ -62,8 +65,8 @@ std::shared_ptr<const Polytope> resized(const Polytope& polytope, double size) {
   larger->radius *= size;
   larger->extent *= size;
   larger->width *= size;
-  larger->volume *= std::pow(size, 3);
-  larger->moments *= std::pow(size, 5);
+  larger->volume *= power(size, 3);
+  larger->moments *= power(size, 5);
   return larger;
 }
 
@@ -100,7 +103,7 @@ double surface_area(const Shape& shape) {
           [](const HalfSpace&) { return 0.0; },
           [](const Capsule& c) { return 2.0 * pi * c.radius * (c.length + 2.0 * c.radius); },
           [](const Cylinder& c) { return 2.0 * pi * c.radius * (c.length + c.radius); },
-          [](const Cone& c) { return pi * c.radius * (c.radius + std::hypot(c.radius, c.height)); },
+          [](const Cone& c) { return pi * c.radius * (c.radius + hypotenuse(c.radius, c.height)); },
           [](const Hull& hull) {
             const double r = hull.rounding;
             const double faces = area_of_faces(*hull.core);

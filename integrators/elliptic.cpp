@@ -1,5 +1,8 @@
 #include "integrators/elliptic.hpp"
 
+#include "core/circular.hpp"
+#include "core/exponential.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,7 +17,7 @@ constexpr double series_error = 1e-18;
 double carlson_rc(double x, double y) {
   double mean = (x + 2.0 * y) / 3.0;
   const double first_offset = y - mean;
-  double bound = std::pow(3.0 * series_error, -1.0 / 8.0) * std::abs(mean - x);
+  double bound = power(3.0 * series_error, -1.0 / 8.0) * std::abs(mean - x);
   double quarter_power = 1.0;
   while (bound >= std::abs(mean)) {
     const double lambda = 2.0 * std::sqrt(x) * std::sqrt(y) + y;
@@ -40,7 +43,7 @@ double carlson_rf(double x, double y, double z) {
   const double first_mean = (x + y + z) / 3.0;
   const double x_offset = first_mean - x, y_offset = first_mean - y;
   double mean = first_mean;
-  double bound = std::pow(3.0 * series_error, -1.0 / 6.0) *
+  double bound = power(3.0 * series_error, -1.0 / 6.0) *
                  std::max({std::abs(x_offset), std::abs(y_offset), std::abs(first_mean - z)});
   double quarter_power = 1.0;
   while (bound >= mean) {
@@ -65,7 +68,7 @@ double carlson_rj(double x, double y, double z, double p) {
   const double x_offset = first_mean - x, y_offset = first_mean - y, z_offset = first_mean - z;
   double delta = (p - x) * (p - y) * (p - z);
   double mean = first_mean;
-  double bound = std::pow(0.25 * series_error, -1.0 / 6.0) *
+  double bound = power(0.25 * series_error, -1.0 / 6.0) *
                  std::max({std::abs(x_offset), std::abs(y_offset), std::abs(z_offset),
                            std::abs(first_mean - p)});
   double quarter_power = 1.0, sum = 0.0;
@@ -97,13 +100,13 @@ double carlson_rj(double x, double y, double z, double p) {
 
 // [DLMF, eq. 19.25.5].
 double elliptic_f(double phi, double m) {
-  const double s = std::sin(phi), c = std::cos(phi);
+  const auto [s, c] = sine_cosine(phi);
   return s * carlson_rf(c * c, 1.0 - m * s * s, 1.0);
 }
 
 // [DLMF, eq. 19.25.14].
 double elliptic_pi(double phi, double n, double m) {
-  const double s = std::sin(phi), c = std::cos(phi);
+  const auto [s, c] = sine_cosine(phi);
   const double q = 1.0 - m * s * s;
   return s *
          (carlson_rf(c * c, q, 1.0) - n / 3.0 * s * s * carlson_rj(c * c, q, 1.0, 1.0 + n * s * s));
@@ -117,8 +120,8 @@ double complete_elliptic_pi(double n, double m) {
 
 JacobiFunctions jacobi_functions(double u, double m) {
   if (m >= 1.0) {
-    const double sech = 1.0 / std::cosh(u);
-    return {std::tanh(u), sech, sech};
+    const double sech = hyperbolic_secant(u);
+    return {hyperbolic_tangent(u), sech, sech};
   }
   // The arithmetic-geometric mean converges quadratically: 6 steps do for 1 - m above 1e-16.
   constexpr std::size_t most = 16;
@@ -138,10 +141,10 @@ JacobiFunctions jacobi_functions(double u, double m) {
   }
   double phi = power * a * u;
   while (steps > 0) {
-    phi = 0.5 * (phi + std::asin(ratio[--steps] * std::sin(phi)));
+    phi = 0.5 * (phi + arc_sine(ratio[--steps] * sine(phi)));
   }
-  const double cn = std::cos(phi);
-  return {std::sin(phi), cn, std::sqrt((1.0 - m) + m * cn * cn)};
+  const auto [sn, cn] = sine_cosine(phi);
+  return {sn, cn, std::sqrt((1.0 - m) + m * cn * cn)};
 }
 
 }  // namespace kairos::integrators

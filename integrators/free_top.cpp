@@ -1,5 +1,7 @@
 #include "integrators/free_top.hpp"
 
+#include "core/circular.hpp"
+#include "core/exponential.hpp"
 #include "integrators/dense_output.hpp"
 #include "integrators/elliptic.hpp"
 
@@ -33,7 +35,7 @@ Jacobi jacobi(double u, double modulus, double quarter) {
   result.sn = rest.sn;
   result.cn = rest.cn;
   result.dn = rest.dn;
-  result.amplitude = std::atan2(result.sn, std::abs(result.cn));
+  result.amplitude = arc_tangent(result.sn, std::abs(result.cn));
   if (std::fmod(result.half_turns, 2.0) != 0.0) {
     result.sn = -result.sn;
     result.cn = -result.cn;
@@ -44,10 +46,10 @@ Jacobi jacobi(double u, double modulus, double quarter) {
 /// R_x(theta) R_z(chi) with L = |L| (sin theta sin chi, sin theta cos chi, cos theta): turns L to
 /// z.
 Quaternion nutation(const Vector3& L) {
-  const double theta = std::atan2(std::hypot(L.x(), L.y()), L.z());
-  const double chi = std::atan2(L.x(), L.y());
-  return Quaternion(std::cos(0.5 * theta), std::sin(0.5 * theta), 0.0, 0.0) *
-         Quaternion(std::cos(0.5 * chi), 0.0, 0.0, std::sin(0.5 * chi));
+  const double theta = arc_tangent(hypotenuse(L.x(), L.y()), L.z());
+  const double chi = arc_tangent(L.x(), L.y());
+  return Quaternion(cosine(0.5 * theta), sine(0.5 * theta), 0.0, 0.0) *
+         Quaternion(cosine(0.5 * chi), 0.0, 0.0, sine(0.5 * chi));
 }
 
 /// w' and w'' in principal axes: Euler's equations and their derivative.
@@ -104,12 +106,12 @@ FreeTop::FreeTop(const BodyInertia& inertia, const Quaternion& q_WB, const Vecto
   modulus_ = std::sqrt(m);
   const bool periodic = modulus_ * modulus_ < 1.0;
   // L^2 - L_3^2 = (I1 w1)^2 (1 + n sn^2).
-  characteristic_ = m * std::pow(I3 * amplitudes_[2] / (I1 * amplitudes_[0]), 2);
+  characteristic_ = m * power(I3 * amplitudes_[2] / (I1 * amplitudes_[0]), 2);
   if (periodic) {
     quarter_ = complete_elliptic_k(modulus_ * modulus_);
     quarter_integral_ = complete_elliptic_pi(characteristic_, modulus_ * modulus_);
   }
-  const double start = std::atan2(w[1] / amplitudes_[1], w[0] / amplitudes_[0]);
+  const double start = arc_tangent(w[1] / amplitudes_[1], w[0] / amplitudes_[0]);
   const double half_turns = std::nearbyint(start / pi);
   phase_ = elliptic_f(start - half_turns * pi, modulus_ * modulus_) + 2.0 * quarter_ * half_turns;
   momentum_frame_ = q_WB * body_to_sorted_.conjugate() *
@@ -149,7 +151,7 @@ FreeTop::Rotation FreeTop::at(double time) const {
   const double precession = L_ / moments_[2] * time - L_ * (1.0 / moments_[2] - 1.0 / moments_[0]) /
                                                           frequency_ *
                                                           (third_kind(u) - third_kind(phase_));
-  const Quaternion about_L(std::cos(0.5 * precession), 0.0, 0.0, std::sin(0.5 * precession));
+  const Quaternion about_L(cosine(0.5 * precession), 0.0, 0.0, sine(0.5 * precession));
   const Quaternion q_WS = momentum_frame_ * about_L * nutation(moments_.cwiseProduct(w_S));
   return {(q_WS * body_to_sorted_).normalized(), q_WS * w_S};
 }
@@ -159,7 +161,7 @@ FreeTop::Rotation FreeTop::at(double time) const {
 // of Hermite interpolation is that times the largest product of the distances to the nodes, which
 // is (h^4 / 81)^3 for four equidistant ones.
 double FreeTop::fit_error(double h) const {
-  double bound = std::pow(1.0 / 81.0, 3);
+  double bound = power(1.0 / 81.0, 3);
   for (int k = 0; k < conditions; ++k) {
     bound *= 0.5 * fastest_ * h * (1.0 + 2.0 * coupling_ * k) / (k + 1);
   }
@@ -169,7 +171,7 @@ double FreeTop::fit_error(double h) const {
 double FreeTop::segment() const {
   const double radian =
       1.0 / fastest_;  // s: a second would be nothing to some tops and all to others
-  return radian * std::pow(fit_tolerance / fit_error(radian), 1.0 / conditions);
+  return radian * power(fit_tolerance / fit_error(radian), 1.0 / conditions);
 }
 
 void FreeTop::fit(double time, double h, Motion& motion) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/archive.hpp"
+#include "core/exponential.hpp"
 #include "core/stepper.hpp"
 
 #include <algorithm>
@@ -72,7 +73,7 @@ class StepControl {
     // time, whatever its unit.
     const double change = std::min(d0 / d1, std::sqrt(d0 / d2));
     const double from_order =
-        std::isfinite(change) && change > 0.0 ? change * std::pow(0.01 / d0, -exponent_) : h;
+        std::isfinite(change) && change > 0.0 ? change * power(0.01 / d0, -exponent_) : h;
     proposed_ = std::min({100.0 * guess, from_order, h});
   }
 
@@ -105,7 +106,7 @@ class StepControl {
     if (!std::isfinite(error)) {
       return least;
     }
-    return error > 0.0 ? std::clamp(safety * std::pow(error, exponent_), least, most) : most;
+    return error > 0.0 ? std::clamp(safety * power(error, exponent_), least, most) : most;
   }
 
   double relative_;

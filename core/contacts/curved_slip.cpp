@@ -1,5 +1,7 @@
 #include "core/contacts/curved_slip.hpp"
 
+#include "core/exponential.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -45,7 +47,7 @@ CurvedSlip curved_slip(const Vector3& slip, const Vector3& pull, double brake, d
   for (int k = order - 1; k <= order; ++k) {
     const double size = std::max(d[at(k)].norm(), std::abs(speed[at(k)]) / speed[0]);
     if (size > 0.0) {
-      curve.duration = std::min(curve.duration, std::pow(last_term / size, 1.0 / k));
+      curve.duration = std::min(curve.duration, power(last_term / size, 1.0 / k));
     }
   }
   curve.direction.resize(order);

@@ -1,5 +1,6 @@
 #include "core/contacts/friction_forces.hpp"
 
+#include "core/circular.hpp"
 #include "core/contacts/nonnegative_solve.hpp"
 
 #include <Eigen/Geometry>
@@ -156,8 +157,8 @@ std::vector<Vector3> FrictionForces::rays(const FrictionTouch& t, const Friction
   for (int k = 0; k < rays_of_cone; ++k) {
     const double angle = 2.0 * M_PI * k / rays_of_cone;
     // What lies along an axis does so exactly.
-    const double c1 = k % 4 == 0 ? (k == 0 ? 1.0 : k == 8 ? -1.0 : 0.0) : std::cos(angle);
-    const double c2 = k % 4 == 0 ? (k == 4 ? 1.0 : k == 12 ? -1.0 : 0.0) : std::sin(angle);
+    const double c1 = k % 4 == 0 ? (k == 0 ? 1.0 : k == 8 ? -1.0 : 0.0) : cosine(angle);
+    const double c2 = k % 4 == 0 ? (k == 4 ? 1.0 : k == 12 ? -1.0 : 0.0) : sine(angle);
     out.emplace_back(t.n + t.mu * (c1 * t.t1 + c2 * t.t2));
   }
   return out;

@@ -1,5 +1,7 @@
 #include "core/contacts/routh_impact.hpp"
 
+#include "core/circular.hpp"
+
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -90,15 +92,15 @@ class Routh {
   /// Where it slides from rest: along what friction leaves of W_tn.
   [[nodiscard]] std::optional<Vector2> leaving() const {
     const auto pull = [&](double angle) -> Vector2 {
-      const Vector2 d(std::cos(angle), std::sin(angle));
+      const Vector2 d(cosine(angle), sine(angle));
       return W_.block<2, 1>(1, 0) - mu_ * (W_.block<2, 2>(1, 1) * d);
     };
     const auto across = [&](double angle) {
       const Vector2 g = pull(angle);
-      return std::cos(angle) * g[1] - std::sin(angle) * g[0];
+      return cosine(angle) * g[1] - sine(angle) * g[0];
     };
-    const double first = std::atan2(W_(2, 0), W_(1, 0));
-    const Vector2 d(std::cos(first), std::sin(first));
+    const double first = arc_tangent(W_(2, 0), W_(1, 0));
+    const Vector2 d(cosine(first), sine(first));
     if (std::abs(across(first)) <= straight * W_.block<2, 1>(1, 0).norm() &&
         pull(first).dot(d) > 0.0) {
       return Vector2(W_.block<2, 1>(1, 0).normalized());
@@ -115,7 +117,7 @@ class Routh {
         const double middle = 0.5 * (from + to);
         (low * across(middle) > 0.0 ? from : to) = middle;
       }
-      const Vector2 found(std::cos(from), std::sin(from));
+      const Vector2 found(cosine(from), sine(from));
       if (pull(from).dot(found) > 0.0) {
         return found;
       }

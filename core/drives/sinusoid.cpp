@@ -1,5 +1,8 @@
 #include "core/drives/sinusoid.hpp"
 
+#include "core/circular.hpp"
+#include "core/exponential.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -46,8 +49,8 @@ double turns_at(double frequency, Instant t) {
 
 /// Taylor coefficients of sin(theta + w s) in s.
 Series sine_series(double theta, double w) {
-  const std::array<double, 4> cycle = {std::sin(theta), std::cos(theta), -std::sin(theta),
-                                       -std::cos(theta)};
+  const SineCosine at = sine_cosine(theta);
+  const std::array<double, 4> cycle = {at.sine, at.cosine, -at.sine, -at.cosine};
   Series series;
   double factor = 1.0;
   for (std::size_t k = 0; k <= degree; ++k) {
@@ -61,8 +64,9 @@ Series sine_series(double theta, double w) {
 std::pair<Series, Series> cosine_and_sine(const Series& y) {
   Series cosine{};
   Series sine{};
-  cosine[0] = std::cos(y[0]);
-  sine[0] = std::sin(y[0]);
+  const SineCosine at = sine_cosine(y[0]);
+  cosine[0] = at.cosine;
+  sine[0] = at.sine;
   for (std::size_t n = 1; n <= degree; ++n) {
     for (std::size_t k = 1; k <= n; ++k) {
       const double slope = static_cast<double>(k) / static_cast<double>(n) * y[k];
@@ -89,7 +93,7 @@ Vector4 components(const Quaternion& q) { return {q.w(), q.x(), q.y(), q.z()}; }
 double longest_segment(double frequency, double half_swing) {
   double part = longest_part;
   if (half_swing > 0.0) {
-    const double step = std::pow(
+    const double step = power(
         quaternion_remainder * tenth_factorial / tenth_derivative_bound(half_swing), 1.0 / 10.0);
     part = std::min(part, step / two_pi);
   }
@@ -118,7 +122,7 @@ Motion Sinusoid::motion(Instant t, double at_most) const {
   motion.position[0] += o.centre.position;
   // Its own series, not the derivative of the position's: one order better.
   motion.velocity = along<3>(sine_series(theta + 0.5 * std::numbers::pi, w), o.amplitude * w);
-  const double advance = std::pow(w * motion.duration, 10.0) / tenth_factorial;
+  const double advance = power(w * motion.duration, 10.0) / tenth_factorial;
   const double amplitude = o.amplitude.norm();
   // The angle theta is wrong by a few ulp of its largest terms; the rest are roundings of sums.
   const double phase_error = 4.0 * eps * (two_pi + std::abs(o.phase));

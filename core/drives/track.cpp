@@ -1,5 +1,7 @@
 #include "core/drives/track.hpp"
 
+#include "core/circular.hpp"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -25,7 +27,7 @@ Vector3 rotation_between(const Quaternion& q0, const Quaternion& q1) {
   if (!(sine > 0.0)) {
     return Vector3::Zero();
   }
-  return 2.0 * std::atan2(sine, turn.w()) / sine * turn.vec();
+  return 2.0 * arc_tangent(sine, turn.w()) / sine * turn.vec();
 }
 
 /// Derivative at sample i of the parabola through it and its neighbours; at the ends, of the chord.

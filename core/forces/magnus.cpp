@@ -1,5 +1,6 @@
 #include "core/forces/magnus.hpp"
 
+#include "core/exponential.hpp"
 #include "core/forces/parameter.hpp"
 
 #include <numbers>
@@ -10,7 +11,7 @@ inline namespace core {
 MagnusLift::MagnusLift(const Parameters& parameters)
     : coefficient_(0.5 * not_negative("density", parameters.density) *
                    not_negative("lift_coefficient", parameters.lift_coefficient) *
-                   std::numbers::pi * std::pow(not_negative("radius", parameters.radius), 3)),
+                   std::numbers::pi * power(not_negative("radius", parameters.radius), 3)),
       wind_(finite("wind", parameters.wind)) {}
 
 void MagnusLift::add(Instant /*t*/, std::span<const BodyState> bodies,

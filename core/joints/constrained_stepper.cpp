@@ -1,6 +1,7 @@
 #include "core/joints/constrained_stepper.hpp"
 
 #include "core/archive.hpp"
+#include "core/circular.hpp"
 #include "core/joint_system.hpp"
 
 #include <algorithm>
@@ -61,7 +62,7 @@ Vector3 rotation_between(const Quaternion& from, const Quaternion& to) {
     turn.coeffs() = -turn.coeffs();
   }
   const double sine = turn.vec().norm();
-  return sine > 0.0 ? Vector3(2.0 * std::atan2(sine, turn.w()) / sine * turn.vec())
+  return sine > 0.0 ? Vector3(2.0 * arc_tangent(sine, turn.w()) / sine * turn.vec())
                     : Vector3(Vector3::Zero());
 }
 

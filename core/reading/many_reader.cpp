@@ -1,5 +1,6 @@
 #include "core/reading/many_reader.hpp"
 
+#include "core/exponential.hpp"
 #include "core/placement.hpp"
 #include "core/random.hpp"
 #include "core/reading/scene_keys.hpp"
@@ -98,7 +99,7 @@ std::vector<double> read_sizes(const TableReader& table, std::size_t count, std:
   return sizes;
 }
 
-double ball_volume(double radius) { return 4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3); }
+double ball_volume(double radius) { return 4.0 / 3.0 * std::numbers::pi * power(radius, 3); }
 
 /// Where the bodies are: balls of their bounding radii do not touch.
 std::vector<Vector3> place(const TableReader& table, const Region& region,
@@ -134,8 +135,8 @@ std::vector<Vector3> place(const TableReader& table, const Region& region,
 void resize(Body& body, double size) {
   body.shape = resized(body.shape, size);
   if (body.mass > 0.0) {  // of the same density
-    body.mass *= std::pow(size, 3);
-    body.inertia *= std::pow(size, 5);
+    body.mass *= power(size, 3);
+    body.inertia *= power(size, 5);
   }
 }
 

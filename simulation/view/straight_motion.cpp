@@ -1,5 +1,7 @@
 #include "simulation/view/straight_motion.hpp"
 
+#include "core/circular.hpp"
+
 #include <cmath>
 #include <numbers>
 
@@ -16,7 +18,7 @@ Vector3 short_way(const Quaternion& from, const Quaternion& to) {
     turn.coeffs() *= -1.0;
   }
   const double sine = turn.vec().norm();
-  return sine > 0.0 ? Vector3(turn.vec() * (2.0 * std::atan2(sine, turn.w()) / sine))
+  return sine > 0.0 ? Vector3(turn.vec() * (2.0 * arc_tangent(sine, turn.w()) / sine))
                     : Vector3::Zero();
 }
 

@@ -1,5 +1,7 @@
 #include "core/schemes/stepping/coulomb_cone.hpp"
 
+#include "core/circular.hpp"
+
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -26,7 +28,7 @@ class Sliding {
   };
   [[nodiscard]] Try along(double angle) const {
     Try t;
-    t.direction = {std::cos(angle), std::sin(angle)};
+    t.direction = {cosine(angle), sine(angle)};
     const double felt = W_(0, 0) - mu_ * (W_(0, 1) * t.direction[0] + W_(0, 2) * t.direction[1]);
     t.possible = felt > 0.0;
     t.normal = t.possible ? -q_[0] / felt : 0.0;
@@ -90,7 +92,7 @@ Vector3 coulomb_impulse(const Matrix3& W, const Vector3& q, double mu) {
   }
   const Sliding sliding(W, q, mu);
   // Sliding is mostly near the direction that sticking has to hold against: look there first.
-  const double guess = std::atan2(-stick[2], -stick[1]);
+  const double guess = arc_tangent(-stick[2], -stick[1]);
   double reach = 0.0;
   for (double step = 1e-3; reach < M_PI; step *= 2.0) {
     const double next = std::min(reach + step, M_PI);

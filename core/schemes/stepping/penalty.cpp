@@ -1,5 +1,6 @@
 #include "core/schemes/stepping/penalty.hpp"
 
+#include "core/exponential.hpp"
 #include "core/schemes/stepping/step_world.hpp"
 
 #include <algorithm>
@@ -18,8 +19,8 @@ Vector3 contact_force(const StepContact& c, const TimeSteppingOptions& options) 
   const double from_restitution =
       c.fastest_approach > 0.0 ? (1.0 - c.restitution) / c.fastest_approach : 0.0;
   const double alpha = options.dissipation.value_or(from_restitution);
-  const double normal = options.stiffness * std::pow(depth, options.exponent) *
-                        std::max(1.0 + 1.5 * alpha * rate, 0.0);
+  const double normal =
+      options.stiffness * power(depth, options.exponent) * std::max(1.0 + 1.5 * alpha * rate, 0.0);
   Vector3 force(normal, c.before[1], c.before[2]);
   const double slip = force.tail<2>().norm();
   force.tail<2>() *=

@@ -1,6 +1,7 @@
 #include "core/schemes/stepping/step_world.hpp"
 
 #include "core/archive.hpp"
+#include "core/circular.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +9,13 @@
 namespace kairos {
 inline namespace core {
 Vector3 turn_between(const Quaternion& q0, const Quaternion& q1) {
-  const Eigen::AngleAxisd angle(Eigen::Quaterniond(q1 * q0.conjugate()));
-  const double shorter = angle.angle() > M_PI ? angle.angle() - 2.0 * M_PI : angle.angle();
-  return shorter * angle.axis();
+  const Quaternion turn = q1 * q0.conjugate();
+  const double sine = turn.vec().norm();
+  if (!(sine > 0.0)) {
+    return Vector3::Zero();
+  }
+  const double shorter = 2.0 * arc_tangent(sine, std::abs(turn.w()));
+  return (turn.w() < 0.0 ? -shorter : shorter) / sine * turn.vec();
 }
 
 std::string stepping_refusal(const Model& model, const Method& method) {
