@@ -216,6 +216,7 @@ void FootageRecorder::begin(const Model& model) {
   footage_ = {};
   footage_.title = model.scene().name;
   footage_.actors = actors_of(model);
+  footage_.joints = model.scene().joints;
 }
 
 void FootageRecorder::frame(const Frame& frame) {

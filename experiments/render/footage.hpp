@@ -18,6 +18,7 @@ struct Footage {
   std::string title;  ///< of the scene
   std::string method;
   std::vector<Actor> actors;
+  std::vector<Joint> joints;
   std::vector<Picture> pictures;
 
   /// Index of the last picture drawn at `time` or before; the first one before that. Not empty.

@@ -198,6 +198,7 @@ ViewRun read_run(const std::string& path) {
                member(summary, "detector") + " + " + member(summary, "impact");
   run.reason = member(summary, "reason");
   run.note = "read from files: between frames and events interpolated, impulses not known";
+  run.joints = footage.joints;
   for (std::size_t i = 0; i < footage.actors.size(); ++i) {
     run.bodies.push_back({footage.actors[i], mobility_of(footage, i)});
   }

@@ -7,8 +7,15 @@ std::vector<Actor> actors_of(const Model& model) {
   std::vector<Actor> actors;
   for (BodyIndex i = 0; i < model.size(); ++i) {
     const Body& body = model.body(i);
-    actors.push_back({body.name, std::string(body.entity->kind()), body.shape, model.shape(i),
-                      model.is_free(i), model.is_field(i), model.mobility(i) != Mobility::fixed});
+    const Vector3 belt = body.entity->surface_velocity(body, body.initial);
+    actors.push_back({.name = body.name,
+                      .entity = std::string(body.entity->kind()),
+                      .shape = body.shape,
+                      .collides_as = model.shape(i),
+                      .is_free = model.is_free(i),
+                      .is_field = model.is_field(i),
+                      .moves = model.mobility(i) != Mobility::fixed,
+                      .belt = body.initial.pose.orientation.conjugate() * belt});
   }
   return actors;
 }

@@ -16,7 +16,8 @@ struct Actor {
   Shape collides_as;     ///< its box where it collides as one
   bool is_free = false;  ///< moved by forces and impacts
   bool is_field = false;
-  bool moves = false;  ///< free or driven
+  bool moves = false;              ///< free or driven
+  Vector3 belt = Vector3::Zero();  ///< how its surface runs at the start, body frame, m/s
 };
 
 /// One per body, in their order.

@@ -1,5 +1,7 @@
 #include "simulation/view/packed_run.hpp"
 
+#include "simulation/view/shape_json.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,25 +9,6 @@
 namespace kairos {
 inline namespace simulation {
 namespace {
-
-void add_shape(JsonWriter& json, std::string_view key, const Shape& shape) {
-  json.open(key);
-  // What the page has no drawing of is drawn as the box around it.
-  const bool drawn =
-      std::holds_alternative<Sphere>(shape) || std::holds_alternative<HalfSpace>(shape);
-  json.text("kind", drawn ? shape_name(shape) : "box");
-  if (const auto* half_space = std::get_if<HalfSpace>(&shape)) {
-    json.number("x", half_space->normal_B.x());
-    json.number("y", half_space->normal_B.y());
-    json.number("z", half_space->normal_B.z());
-  } else {
-    const Vector3 h = bounding_box(shape).half_extents;
-    json.number("x", h.x());
-    json.number("y", h.y());
-    json.number("z", h.z());
-  }
-  json.close();
-}
 
 void add_bodies(JsonWriter& json, const std::vector<ViewBody>& bodies) {
   constexpr std::string_view movers[] = {"fixed", "driven", "free"};
@@ -37,8 +20,33 @@ void add_bodies(JsonWriter& json, const std::vector<ViewBody>& bodies) {
     json.text("entity", actor.entity);
     json.text("moves", movers[static_cast<std::size_t>(bodies[i].moves)]);
     json.flag("field", actor.is_field);
+    if (!actor.belt.isZero(0.0)) {
+      add_vector(json, "belt", actor.belt);
+    }
     add_shape(json, "shape", actor.shape);
     add_shape(json, "collides", actor.collides_as);
+    json.close();
+  }
+  json.close();
+}
+
+void add_side(JsonWriter& json, std::string_view key, const JointSide& side) {
+  json.open(key);
+  json.count("body", side.body ? static_cast<std::int64_t>(*side.body) : -1);
+  add_vector(json, "point", side.point);
+  add_vector(json, "axis", side.frame * Vector3::UnitX());
+  json.close();
+}
+
+void add_joints(JsonWriter& json, const std::vector<Joint>& joints) {
+  json.open("joints");
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    json.open(fmt::format("{}", k));
+    json.text("kind", to_string(joints[k].kind));
+    json.text("name", joints[k].name);
+    json.flag("collide", joints[k].collide);
+    add_side(json, "a", joints[k].a);
+    add_side(json, "b", joints[k].b);
     json.close();
   }
   json.close();
@@ -109,6 +117,7 @@ void describe(JsonWriter& json, const ViewRun& run, const PackedArrays& arrays) 
   json.text("note", run.note);
   json.text("reason", run.reason);
   add_bodies(json, run.bodies);
+  add_joints(json, run.joints);
   json.open("arrays");
   for (const PackedArrays::Entry& entry : arrays.entries()) {
     json.open(entry.name);

@@ -32,6 +32,7 @@ void ViewRecorder::begin(const Model& model) {
   for (Actor& actor : actors_of(model)) {
     run_.bodies.push_back({std::move(actor), model.mobility(run_.bodies.size())});
   }
+  run_.joints = model.scene().joints;
   run_.tracks.resize(model.size());
   for (const char* name : {"kinetic", "potential"}) {
     run_.energy.emplace_back(name, std::vector<double>());

@@ -2,6 +2,7 @@
 
 #include "core/entity.hpp"
 #include "core/event.hpp"
+#include "core/joint.hpp"
 #include "simulation/view/actor.hpp"
 #include "simulation/view/body_track.hpp"
 
@@ -37,6 +38,7 @@ struct ViewRun {
   std::string note;    ///< what a person has to know of the data; "" if nothing
   std::string reason;  ///< why the run stopped; "" if it completed
   std::vector<ViewBody> bodies;
+  std::vector<Joint> joints;
   std::vector<BodyTrack> tracks;  ///< by body
   std::vector<double> frame_times;
   /// Name and value per frame, J: kinetic, potential, the lines of the ledger, unexplained.

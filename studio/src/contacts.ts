@@ -26,12 +26,21 @@ export class Contacts {
   private readonly radius: Float64Array;
   private readonly order: number[];
   private readonly planes: number[];
+  /** Pairs that a joint holds together, and that do not meet as solids. */
+  private readonly held: Set<number>;
 
   constructor(private readonly run: Run) {
     this.radius = Float64Array.from(run.bodies, (body) => boundingRadius(body.collides));
+    const count = run.bodies.length;
+    this.held = new Set(run.joints.filter((joint) => !joint.collide && joint.a.body >= 0 && joint.b.body >= 0)
+      .flatMap(({ a, b }) => [a.body * count + b.body, b.body * count + a.body]));
     const solids = run.bodies.map((_, i) => i).filter((i) => !run.bodies[i].field);
     this.order = solids.filter((i) => Number.isFinite(this.radius[i]));
     this.planes = solids.filter((i) => !Number.isFinite(this.radius[i]));
+  }
+
+  private meets(a: number, b: number): boolean {
+    return meet(this.run, a, b) && !this.held.has(a * this.run.bodies.length + b);
   }
 
   /** All that overlap, by sweep and prune along x; `states` by body. */
@@ -48,7 +57,7 @@ export class Contacts {
     }
     const found: Overlap[] = [];
     const test = (a: number, b: number) => {
-      if (!meet(run, a, b)) return;
+      if (!this.meets(a, b)) return;
       const depth = -gap(run.bodies[a].collides, states[a], run.bodies[b].collides, states[b]);
       const s = states[a];
       const scale = 1 + Math.abs(s.px) + Math.abs(s.py) + Math.abs(s.pz);
@@ -81,7 +90,7 @@ export class Contacts {
       look(to);
     } else {
       for (let k = 0; k < run.bodies.length; ++k) {
-        if (k !== i && meet(run, i, k)) look(k);
+        if (k !== i && this.meets(i, k)) look(k);
       }
     }
     return least;

@@ -1,13 +1,44 @@
 // What `kairos view` puts into the page, see README.md.
 
-export type ShapeKind = "sphere" | "box" | "half-space";
+export type ShapeKind = "sphere" | "box" | "half-space" | "capsule" | "cylinder" | "cone" | "hull";
 
-/** Half extents (m), or the outward normal of a half-space in the body's frame. */
+/** Body frame, m. */
 export interface Shape {
   kind: ShapeKind;
+  /** Half extents of the box around the origin that contains it, or the outward normal of a half-space. */
   x: number;
   y: number;
   z: number;
+  /** Of what is round about y, and its extent along y: of a capsule between the centres of its caps. */
+  radius?: number;
+  length?: number;
+  /** Of a hull: how far its surface is from that of its points; coordinates, three a point. */
+  rounding?: number;
+  points?: number[];
+}
+
+export interface Vector {
+  x: number;
+  y: number;
+  z: number;
+}
+
+export const jointKinds = ["ball", "hinge", "slider", "rod", "weld"] as const;
+
+/** A body (-1: the world), and in its frame where the joint is and its axis. */
+export interface JointSide {
+  body: number;
+  point: Vector;
+  axis: Vector;
+}
+
+export interface Joint {
+  kind: (typeof jointKinds)[number];
+  name: string;
+  /** Whether the two also meet as solids. */
+  collide: boolean;
+  a: JointSide;
+  b: JointSide;
 }
 
 export interface Body {
@@ -17,6 +48,8 @@ export interface Body {
   field: boolean;
   shape: Shape;
   collides: Shape;
+  /** How its surface runs, body frame, m/s. */
+  belt?: Vector;
 }
 
 export const eventKinds = [
@@ -27,6 +60,9 @@ export const eventKinds = [
   "field left",
   "grasped",
   "released",
+  "slip begins",
+  "stick begins",
+  "roll begins",
 ] as const;
 
 /** A run: SI units, world frame, y up. */
@@ -37,6 +73,7 @@ export interface Run {
   note: string;
   reason: string;
   bodies: Body[];
+  joints: Joint[];
   /** Motions of body i are those from first[i] to first[i + 1] - 1. */
   first: Uint32Array;
   start: Float64Array;
@@ -73,6 +110,7 @@ export interface RunText {
   note: string;
   reason: string;
   bodies: Record<string, Body>;
+  joints?: Record<string, Joint>;
   arrays: Record<string, Entry>;
 }
 
@@ -99,6 +137,9 @@ export function fromBase64(text: string): ArrayBuffer {
   return bytes.buffer;
 }
 
+/** Points are written as members 0, 1, 2, ... */
+const withPoints = (shape: Shape): Shape => (shape.points ? { ...shape, points: Object.values(shape.points) } : shape);
+
 /** A run from its names and texts, and the block of its numbers. */
 export function readRun(text: RunText, buffer: ArrayBuffer): Run {
   const find = (name: string): Entry => {
@@ -116,7 +157,8 @@ export function readRun(text: RunText, buffer: ArrayBuffer): Run {
     method: text.method,
     note: text.note,
     reason: text.reason,
-    bodies: Object.values(text.bodies),
+    bodies: Object.values(text.bodies).map((body) => ({ ...body, shape: withPoints(body.shape), collides: withPoints(body.collides) })),
+    joints: Object.values(text.joints ?? {}),
     first: u32("first"),
     start: f64("start"),
     duration: f64("duration"),

@@ -1,4 +1,5 @@
 // Signed gaps between shapes: m, negative inside.
+import { convexGap, marginOf, support } from "./convex";
 import type { Shape } from "./data";
 import type { State } from "./motion";
 
@@ -17,7 +18,17 @@ const B = new Float64Array(9);
 export const boundingRadius = (shape: Shape): number =>
   shape.kind === "half-space" ? Infinity
   : shape.kind === "sphere" ? shape.x
+  : shape.kind === "capsule" ? shape.radius! + shape.length! / 2
+  : shape.kind === "hull" ? Math.sqrt(farthestSquare(shape.points!)) + shape.rounding!
   : Math.hypot(shape.x, shape.y, shape.z);
+
+function farthestSquare(points: number[]): number {
+  let most = 0;
+  for (let k = 0; k < points.length; k += 3) most = Math.max(most, points[k] ** 2 + points[k + 1] ** 2 + points[k + 2] ** 2);
+  return most;
+}
+
+const simple = (shape: Shape) => shape.kind === "box" || shape.kind === "sphere";
 
 function sphereBox(r: number, sphere: State, box: Shape, at: State): number {
   axes(at, B);
@@ -41,6 +52,10 @@ function halfSpaceGap(plane: Shape, on: State, shape: Shape, at: State): number 
   normalOf(plane, on, n);
   const height = n[0] * (at.px - on.px) + n[1] * (at.py - on.py) + n[2] * (at.pz - on.pz);
   if (shape.kind === "sphere") return height - shape.x;
+  if (!simple(shape)) {
+    const [x, y, z] = support(shape, at, [-n[0], -n[1], -n[2]]);
+    return height + n[0] * x + n[1] * y + n[2] * z - marginOf(shape);
+  }
   axes(at, B);
   const reach =
     shape.x * Math.abs(n[0] * B[0] + n[1] * B[1] + n[2] * B[2]) +
@@ -89,6 +104,7 @@ function boxBox(a: Shape, sa: State, b: Shape, sb: State): number {
 export function gap(a: Shape, sa: State, b: Shape, sb: State): number {
   if (a.kind === "half-space") return b.kind === "half-space" ? Infinity : halfSpaceGap(a, sa, b, sb);
   if (b.kind === "half-space") return halfSpaceGap(b, sb, a, sa);
+  if (!simple(a) || !simple(b)) return convexGap(a, sa, b, sb);
   if (a.kind === "sphere") {
     return b.kind === "sphere"
       ? Math.hypot(sb.px - sa.px, sb.py - sa.py, sb.pz - sa.pz) - a.x - b.x

@@ -13,6 +13,7 @@ export interface Palette {
   inside: string;
   normal: string;
   impulse: string;
+  joint: string;
   /** Of plots, in order. */
   lines: string[];
 }
@@ -30,6 +31,7 @@ const light: Palette = {
   inside: "#d55e00",
   normal: "#00614a",
   impulse: "#b3470a",
+  joint: "#8a3a6b",
   lines: ["#0072b2", "#a34500", "#1b2127", "#00785a", "#a04e7e", "#7a5a00", "#3a77a5", "#6b6b6b"],
 };
 
@@ -46,6 +48,7 @@ const dark: Palette = {
   inside: "#ff7a1a",
   normal: "#34d3a6",
   impulse: "#ffa24d",
+  joint: "#f2b0d6",
   lines: ["#56b4e9", "#ff8b3d", "#e8edf2", "#2fc79b", "#e39ac3", "#f0e442", "#8fb8d8", "#b0b0b0"],
 };
 

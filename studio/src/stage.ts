@@ -65,9 +65,10 @@ export class Stage {
 
   /** From a place to another. */
   lookAt(from: Vector3, to: Vector3): void {
-    this.controls.minDistance = 0.01;
-    this.controls.maxDistance = 1e3;
-    this.camera.near = 0.02;
+    const far = from.distanceTo(to);
+    this.controls.minDistance = Math.min(0.01, 0.01 * far);
+    this.controls.maxDistance = 1e3 * Math.max(1, far);
+    this.camera.near = Math.min(0.02, 0.02 * far);
     this.camera.position.copy(from);
     this.controls.target.copy(to);
     this.controls.update();

@@ -1,5 +1,6 @@
 // The viewer: binds the views, time, plots and keys of some runs together.
 import { Vector3 } from "three";
+import { boundingRadius } from "./gap";
 import { bindKeys } from "./keys";
 import type { Run } from "./data";
 import { Film, compose, filmType, save, type Caption } from "./export";
@@ -113,7 +114,7 @@ export class Viewer {
     element("summary").textContent = run.summary;
     const stops = this.runs.filter((each) => each.reason !== "");
     element("problem").hidden = stops.length === 0;
-    element("problem").textContent = stops
+    element("problem-text").textContent = stops
       .map((each) => `${each.method}: stopped at ${seconds(each.end)}: ${each.reason}`).join(" — ");
     const notes = this.runs.filter((each) => each.note !== "").map((each) => `${each.method}: ${each.note}.`);
     element("notes").textContent = [...notes, "SI units; y is up."].join(" ");
@@ -128,8 +129,11 @@ export class Viewer {
       if (label) label.hidden = !there;
     };
     present("fields", run.bodies.some((body) => body.field));
-    document.querySelector<HTMLElement>(".key.field")!.hidden = !run.bodies.some((body) => body.field);
-    document.querySelector<HTMLElement>(".key.driven")!.hidden = !run.bodies.some((body) => body.moves === "driven");
+    const keys = {
+      field: run.bodies.some((body) => body.field), driven: run.bodies.some((body) => body.moves === "driven"),
+      joint: run.joints.length > 0, belt: run.bodies.some((body) => body.belt !== undefined),
+    };
+    for (const [key, there] of Object.entries(keys)) document.querySelector<HTMLElement>(`.key.${key}`)!.hidden = !there;
   }
 
   private bind(): void {
@@ -141,6 +145,7 @@ export class Viewer {
     click("event-back", () => player.event(-1));
     click("event-on", () => player.event(1));
     for (const [id, direction] of Object.entries(views)) click(id, () => stage.fit(direction));
+    click("problem-show", () => this.showProblem());
     click("picture", () => this.picture());
     click("film", () => void this.toggleFilm());
     for (const id of ["trail", "boxes", "fields", "inside", "impacts", "drawn"]) {
@@ -163,6 +168,27 @@ export class Viewer {
       },
       view: (name) => stage.fit(views[name]),
     });
+  }
+
+  /** Where a run stopped: at its end, near the first body that its reason names, those that move before others. */
+  private showProblem(): void {
+    const i = this.runs.findIndex((run) => run.reason !== "");
+    const run = this.runs[i];
+    const named = run.bodies.map((body, k) => ({ body, k, at: run.reason.indexOf(`'${body.name}'`) })).filter(({ at }) => at >= 0)
+      .sort((a, b) => Number(b.body.moves === "free") - Number(a.body.moves === "free") || a.at - b.at);
+    this.player.play(false);
+    this.player.seek(run.end);
+    if (named.length > 0) {
+      const [{ k, body }] = named;
+      this.choose(k);
+      const state = this.worlds[i].motions.at(k, run.end, newState());
+      const at = new Vector3(state.px, state.py, state.pz);
+      box("follow").checked = false;
+      this.stage.follow(-1);
+      this.stage.lookAt(views.fit.clone().setLength(8 * boundingRadius(body.shape)).add(at), at);
+    }
+    element("canvas").focus({ preventScroll: true });
+    this.dirty = true;
   }
 
   private bindPicking(): void {

@@ -1,18 +1,21 @@
 // One run as a three.js scene: bodies, their boxes, what is inside what, trails, impacts.
 import {
-  AmbientLight, BoxGeometry, BufferAttribute, BufferGeometry, Color, ConeGeometry, DirectionalLight, DoubleSide,
+  AmbientLight, BufferAttribute, BufferGeometry, Color, ConeGeometry, DirectionalLight, DoubleSide, EdgesGeometry,
   DynamicDrawUsage, FrontSide, GridHelper, Group, HemisphereLight, InstancedMesh, LineBasicMaterial, LineSegments, Material,
-  Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, Plane, PlaneGeometry, Quaternion, Scene, SphereGeometry,
+  Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, Plane, PlaneGeometry, Quaternion, Scene,
   Vector3, type Camera,
 } from "three";
+import { Belts } from "./belts";
 import { Contacts, type Overlap } from "./contacts";
 import type { Body, Run, Shape } from "./data";
 import { FatLines } from "./fat";
 import { boundingRadius } from "./gap";
 import { Insides } from "./inside";
+import { Joints } from "./joints";
 import { Motions, newState, type State } from "./motion";
 import type { Palette } from "./palette";
 import { after, before } from "./search";
+import { solidGeometry, solidKey, stretch } from "./solids";
 
 export interface Look {
   boxes: boolean;
@@ -27,29 +30,25 @@ const trailPoints = 96;
 const mostTrails = 48;
 const mostArrows = 24;
 
-/** Eight octants in two tones: one sees a ball turn. Of many balls each is small, and coarser. */
-function ballGeometry(balls: number): BufferGeometry {
-  const around = balls <= 40 ? 32 : balls <= 400 ? 20 : 12;
-  const geometry = new SphereGeometry(1, around, (3 * around) / 4);
-  const position = geometry.getAttribute("position");
-  const tones = new Float32Array(3 * position.count);
-  for (let i = 0; i < position.count; ++i) {
-    const dark = position.getX(i) * position.getY(i) * position.getZ(i) > 1e-6;
-    tones.fill(dark ? 0.72 : 1, 3 * i, 3 * i + 3);
-  }
-  geometry.setAttribute("color", new BufferAttribute(tones, 3));
-  return geometry;
-}
-
 /** The bodies that one instanced mesh draws. */
 interface Batch {
   mesh: InstancedMesh;
   bodies: number[];
 }
 
-const corners = [-1, 1].flatMap((x) => [-1, 1].flatMap((y) => [-1, 1].map((z) => [x, y, z] as const)));
+const corners = [-1, 1].flatMap((x) => [-1, 1].flatMap((y) => [-1, 1].map((z) => new Vector3(x, y, z))));
 const edges = corners.flatMap((a, i) =>
-  corners.flatMap((b, j) => (j > i && a.filter((x, k) => x !== b[k]).length === 1 ? [i, j] : [])));
+  corners.flatMap((b, j) => (j > i && a.clone().sub(b).lengthSq() === 4 ? [a, b] : [])));
+
+/** Ends of the edges of a shape, body frame; of a round one none. */
+function edgesOf(shape: Shape): Vector3[] {
+  if (shape.kind === "box") return edges.map((corner) => corner.clone().multiply(new Vector3(shape.x, shape.y, shape.z)));
+  const sharp = shape.kind === "cylinder" || shape.kind === "cone" || (shape.kind === "hull" && !(shape.rounding! > 0));
+  if (!sharp) return [];
+  const position = new EdgesGeometry(solidGeometry(shape, 1), shape.kind === "hull" ? 1 : 40).getAttribute("position");
+  const scale = stretch(shape, new Vector3());
+  return Array.from({ length: position.count }, (_, k) => new Vector3().fromBufferAttribute(position, k).multiply(scale));
+}
 
 export class World {
   readonly scene = new Scene();
@@ -61,7 +60,9 @@ export class World {
   overlaps: Overlap[] = [];
   private readonly batches: Batch[] = [];
   private readonly planes: { body: number; group: Group; grid: GridHelper; clip: Plane }[] = [];
-  private readonly boxed: number[];
+  private readonly edged: { body: number; ends: Vector3[] }[];
+  private readonly joints: Joints;
+  private readonly belts: Belts;
   private readonly wires: LineSegments<BufferGeometry, LineBasicMaterial>;
   private readonly insides = new Insides(16);
   private readonly trails = new FatLines(mostTrails * trailPoints, 2.5);
@@ -88,13 +89,16 @@ export class World {
     this.measure();
     this.light();
     this.makeBodies();
-    this.boxed = run.bodies.map((_, i) => i).filter((i) => run.bodies[i].collides.kind === "box");
+    this.edged = run.bodies.map(({ collides }, body) => ({ body, ends: edgesOf(collides) })).filter(({ ends }) => ends.length > 0);
+    this.joints = new Joints(run.joints, this.radius, new Color(colour.joint));
+    this.belts = new Belts(run.bodies, this.radius, new Color(colour.driven));
     this.wires = this.makeWires();
     this.heads = new InstancedMesh(new ConeGeometry(1, 2.6, 16), new MeshBasicMaterial({ depthTest: false }), 2 * mostArrows);
     this.heads.renderOrder = 20;
     this.heads.frustumCulled = false;
     this.heads.count = 0;
     this.scene.add(this.insides.object, this.trails.object, this.shafts.object, this.heads);
+    this.scene.add(this.joints.lines.object, this.joints.points, this.belts.lines.object);
     this.measureImpulses();
   }
 
@@ -185,23 +189,23 @@ export class World {
 
   private makeBodies(): void {
     const { run } = this;
-    const ball = ballGeometry(run.bodies.filter((body) => body.shape.kind === "sphere").length);
-    const cube = new BoxGeometry(2, 2, 2);
     const kinds = new Map<string, number[]>();
     run.bodies.forEach((body, i) => {
       if (body.shape.kind === "half-space") return this.makePlane(body, i);
-      const key = `${body.shape.kind} ${body.field ? "field" : body.moves === "fixed" ? "fixed" : "moving"}`;
+      const key = `${solidKey(body.shape)} ${body.field ? "field" : body.moves === "fixed" ? "fixed" : "moving"}`;
       kinds.set(key, [...(kinds.get(key) ?? []), i]);
     });
     for (const [key, bodies] of kinds) {
-      const round = key.startsWith("sphere");
+      const { shape } = run.bodies[bodies[0]];
+      const geometry = solidGeometry(shape, bodies.length);
+      const round = shape.kind === "sphere";
       const field = key.endsWith("field");
       const seeThrough = field || (key.endsWith("fixed") && !round);
       const material = new MeshLambertMaterial({
-        vertexColors: round, transparent: seeThrough, opacity: field ? 0.25 : seeThrough ? 0.62 : 1,
-        depthWrite: !field,
+        vertexColors: geometry.hasAttribute("color"), transparent: seeThrough, opacity: field ? 0.25 : seeThrough ? 0.62 : 1,
+        depthWrite: !field, flatShading: shape.kind === "hull",
       });
-      const mesh = new InstancedMesh(round ? ball : cube, material, bodies.length);
+      const mesh = new InstancedMesh(geometry, material, bodies.length);
       mesh.instanceMatrix.setUsage(DynamicDrawUsage);
       mesh.frustumCulled = false;
       mesh.userData.field = field;
@@ -236,10 +240,9 @@ export class World {
 
   private makeWires(): LineSegments<BufferGeometry, LineBasicMaterial> {
     const geometry = new BufferGeometry();
-    const positions = new BufferAttribute(new Float32Array(3 * 8 * this.boxed.length), 3);
+    const positions = new BufferAttribute(new Float32Array(3 * this.edged.reduce((sum, { ends }) => sum + ends.length, 0)), 3);
     positions.setUsage(DynamicDrawUsage);
     geometry.setAttribute("position", positions);
-    geometry.setIndex(this.boxed.flatMap((_, k) => edges.map((corner) => 8 * k + corner)));
     const wires = new LineSegments(geometry, new LineBasicMaterial({ color: this.colours.edge }));
     wires.frustumCulled = false;
     this.scene.add(wires);
@@ -268,6 +271,8 @@ export class World {
       this.insides.add(bodies[a].collides, this.states[a], bodies[b].collides, this.states[b], origin, this.colours.inside);
     }
     this.insides.commit();
+    this.joints.show(this.states, origin, this.colours.background);
+    this.belts.show(t, this.states, this.centre, origin, this.colours.background);
     this.drawTrails(t, origin, look, highlighted);
     this.drawImpacts(t, origin, look);
   }
@@ -279,7 +284,7 @@ export class World {
         const shape: Shape = this.run.bodies[i].shape;
         this.p.set(at.px - origin.x, at.py - origin.y, at.pz - origin.z);
         this.q.set(at.qx, at.qy, at.qz, at.qw);
-        this.s.set(shape.x, shape.y, shape.z);
+        stretch(shape, this.s);
         mesh.setMatrixAt(k, this.matrix.compose(this.p, this.q, this.s));
       });
       mesh.instanceMatrix.needsUpdate = true;
@@ -313,17 +318,17 @@ export class World {
     this.wires.visible = look.boxes;
     if (!look.boxes) return;
     const positions = this.wires.geometry.getAttribute("position") as BufferAttribute;
-    this.boxed.forEach((i, k) => {
-      const at = this.states[i];
-      const { x, y, z } = this.run.bodies[i].collides;
-      const hidden = this.run.bodies[i].field && !look.fields;
+    let k = 0;
+    for (const { body, ends } of this.edged) {
+      const at = this.states[body];
+      const hidden = this.run.bodies[body].field && !look.fields;
       this.q.set(at.qx, at.qy, at.qz, at.qw);
-      corners.forEach((corner, c) => {
-        this.p.set(corner[0] * x, corner[1] * y, corner[2] * z).applyQuaternion(this.q);
+      for (const end of ends) {
+        this.p.copy(end).applyQuaternion(this.q);
         if (hidden) this.p.setScalar(0);
-        positions.setXYZ(8 * k + c, this.p.x + at.px - origin.x, this.p.y + at.py - origin.y, this.p.z + at.pz - origin.z);
-      });
-    });
+        positions.setXYZ(k++, this.p.x + at.px - origin.x, this.p.y + at.py - origin.y, this.p.z + at.pz - origin.z);
+      }
+    }
     positions.needsUpdate = true;
   }
 

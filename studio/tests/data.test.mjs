@@ -170,3 +170,101 @@ test("a thousand bodies and a hundred thousand frames: a body's pose costs a sea
     await context.close();
   }
 });
+
+test("events are called what events.csv calls them", async () => {
+  const { readPage, eventKinds } = await modules(place.path, "data.ts");
+  for (const scene of ["belt", "rolling", "table-tennis"]) {
+    const out = join(place.path, `${scene}-events`);
+    await kairos("run", scene, "--duration", "4", "--out", out);
+    await kairos("view", scene, "--duration", "4", "--out", `${out}.html`);
+    const [run] = await runsOf(readPage, `${out}.html`);
+    const [head, ...lines] = (await readFile(join(out, "events.csv"), "utf8")).trim().split("\n").map((line) => line.split(","));
+    assert.deepEqual(Array.from(run.events.kind, (kind) => eventKinds[kind]), lines.map((line) => line[head.indexOf("kind")].replace("-", " ")));
+  }
+});
+
+test("gaps of shapes are those of geometry", async () => {
+  const { gap, newState } = await modules(place.path, "gap.ts", "motion.ts");
+  const at = (px, py, pz, axis = [0, 0, 1], angle = 0) => {
+    const norm = Math.hypot(...axis);
+    const [qx, qy, qz] = axis.map((x) => (x / norm) * Math.sin(angle / 2));
+    return { ...newState(), px, py, pz, qw: Math.cos(angle / 2), qx, qy, qz };
+  };
+  const capsule = { kind: "capsule", x: 0.1, y: 0.6, z: 0.1, radius: 0.1, length: 1 };
+  const cylinder = { kind: "cylinder", x: 0.2, y: 0.5, z: 0.2, radius: 0.2, length: 1 };
+  const cone = { kind: "cone", x: 0.3, y: 0.75, z: 0.3, radius: 0.3, length: 1 };
+  const box = { kind: "box", x: 0.1, y: 0.2, z: 0.3 };
+  const hull = { kind: "hull", x: 0.1, y: 0.2, z: 0.3, rounding: 0, points: [-0.1, 0.1].flatMap((x) => [-0.2, 0.2].flatMap((y) => [-0.3, 0.3].flatMap((z) => [x, y, z]))) };
+  const ball = { kind: "sphere", x: 0.05, y: 0.05, z: 0.05 };
+  const floor = { kind: "half-space", x: 0, y: 1, z: 0 };
+  const cases = [
+    ["capsules side by side", capsule, at(0, 0, 0), capsule, at(1, 0.3, 0), 0.8],
+    ["crossed capsules", capsule, at(0, 0, 0), capsule, at(0.5, 0, 0, [1, 0, 0], Math.PI / 2), 0.3],
+    ["capsules that overlap by their margins", capsule, at(0, 0, 0), capsule, at(0.15, 0, 0), -0.05],
+    ["cylinders, rim to rim", cylinder, at(0, 0, 0), cylinder, at(1, 1.3, 0), Math.hypot(0.6, 0.3)],
+    ["a cone's apex to a face of a cylinder", cone, at(0, -1, 0), cylinder, at(0, 0.5, 0), 0.25],
+    ["a cone beside a capsule", cone, at(0, 0, 0), capsule, at(1, 0.25, 0), 0.6],
+    ["a lying cylinder on the floor", cylinder, at(0, 0.2, 0, [0, 0, 1], Math.PI / 2), floor, at(0, 0, 0), 0],
+    ["a cone on its base", cone, at(0, 0.5, 0), floor, at(0, 0, 0), 0.25],
+    ["a rounded hull in the floor", { ...hull, rounding: 0.05 }, at(0, 0.2, 0), floor, at(0, 0, 0), -0.05],
+    ["a hull inside a hull", hull, at(0, 0, 0), hull, at(0.15, 0, 0), -0.05],
+  ];
+  for (const [what, a, sa, b, sb, wanted] of cases) {
+    assert.ok(Math.abs(gap(a, sa, b, sb) - wanted) < 1e-9, `${what}: ${gap(a, sa, b, sb)}, not ${wanted}`);
+    assert.ok(Math.abs(gap(b, sb, a, sa) - wanted) < 1e-9, `${what}, the other way round`);
+  }
+  // A box told by its corners, anywhere around a ball: as the box's own formula has it.
+  for (let k = 0; k < 500; ++k) {
+    const turn = at(0, 0, 0, [Math.sin(k), Math.cos(3 * k), Math.sin(2 * k + 1)], k);
+    const there = at(0.5 * Math.sin(7 * k), 0.6 * Math.cos(5 * k), 0.7 * Math.sin(11 * k + 2));
+    const wanted = gap(box, turn, ball, there);
+    if (wanted > -0.05) assert.ok(Math.abs(gap(hull, turn, ball, there) - wanted) < 1e-9, `${k}: ${gap(hull, turn, ball, there)}, not ${wanted}`);
+  }
+});
+
+test("shapes of a run: apart at every picture, in touch at every impact, as the program says", async () => {
+  const { readPage, Motions, Contacts, newState } = await modules(place.path, "data.ts", "motion.ts", "contacts.ts");
+  const file = join(place.path, "shapes.html");
+  await kairos("view", "shapes", "--out", file);
+  const [run] = await runsOf(readPage, file);
+  assert.deepEqual(run.bodies.map((body) => body.shape.kind), ["half-space", "capsule", "cylinder", "cone", "hull", "hull"]);
+  const motions = new Motions(run), contacts = new Contacts(run);
+  const states = run.bodies.map(newState);
+  for (let k = 0; k <= 2000; ++k) {
+    states.forEach((state, i) => motions.at(i, (run.end * k) / 2000, state));
+    assert.deepEqual(contacts.overlaps(states), []);
+  }
+  assert.ok(run.events.time.length > 10);
+  run.events.time.forEach((t, e) => {
+    const [a, b] = [run.events.pair[2 * e], run.events.pair[2 * e + 1]];
+    const gap = contacts.gapAt(motions, a === 0 ? b : a, t, a === 0 ? a : b);
+    assert.ok(Math.abs(gap - run.events.gap[e]) < 1e-8, `event ${e}: ${gap}, not ${run.events.gap[e]}`);
+  });
+});
+
+test("joints: both sides are at one place all the time; what they hold is not told as an overlap", async () => {
+  const { readPage, Motions, Contacts, newState } = await modules(place.path, "data.ts", "motion.ts", "contacts.ts");
+  for (const [scene, kinds] of [["slider-crank", ["hinge", "hinge", "hinge", "slider"]], ["double-pendulum", ["rod", "rod"]]]) {
+    const file = join(place.path, `${scene}.html`);
+    await kairos("view", scene, "--out", file);
+    const [run] = await runsOf(readPage, file);
+    assert.deepEqual(run.joints.map((joint) => joint.kind), kinds);
+    const motions = new Motions(run), contacts = new Contacts(run);
+    const states = run.bodies.map(newState);
+    const placeOf = ({ body, point: { x, y, z } }) => {
+      if (body < 0) return [x, y, z];
+      const { px, py, pz, qw, qx, qy, qz } = states[body];
+      const [tx, ty, tz] = [2 * (qy * z - qz * y), 2 * (qz * x - qx * z), 2 * (qx * y - qy * x)];
+      return [px + x + qw * tx + qy * tz - qz * ty, py + y + qw * ty + qz * tx - qx * tz, pz + z + qw * tz + qx * ty - qy * tx];
+    };
+    for (let k = 0; k <= 500; ++k) {
+      states.forEach((state, i) => motions.at(i, (run.end * k) / 500, state));
+      assert.deepEqual(contacts.overlaps(states), [], scene);
+      for (const { kind, a, b } of run.joints) {
+        const apart = Math.hypot(...placeOf(a).map((x, i) => x - placeOf(b)[i]));
+        if (kind === "slider") assert.ok(apart < 1);
+        else assert.ok(Math.abs(apart - (kind === "rod" ? 1 : 0)) < 1e-5, `${scene}, ${kind}: ${apart}`);
+      }
+    }
+  }
+});

@@ -9,7 +9,7 @@ const source = resolve(dirname(fileURLToPath(import.meta.url)), "../src");
 /** Bundles what is exported from the given modules into `folder` and loads it. */
 export async function modules(folder, ...names) {
   const entry = names.map((name) => `export * from ${JSON.stringify(join(source, name))};`).join("\n");
-  const outfile = join(folder, "modules.mjs");
+  const outfile = join(folder, `${names.map((name) => name.replace(/\W/g, "-")).join("_")}.mjs`);
   await build({ stdin: { contents: entry, resolveDir: source }, outfile, bundle: true, format: "esm", logLevel: "warning" });
   await writeFile(join(folder, "package.json"), '{"type": "module"}');
   return import(pathToFileURL(outfile).href);

@@ -2,7 +2,7 @@
 import { readFile, writeFile } from "node:fs/promises";
 
 /** Balls that bounce on a floor, each by itself, `bodies` of them for `frames` frames of 1/60 s. */
-export async function syntheticPage(template, file, { bodies, frames, text = "many" }) {
+export async function syntheticPage(template, file, { bodies, frames, slowest = 3, text = "many", reason = "" }) {
   const end = frames / 60;
   const first = [0], start = [], duration = [], layout = [], c = [];
   const events = { time: [], kind: [], pair: [], gap: [], approach: [], vectors: [] };
@@ -16,7 +16,7 @@ export async function syntheticPage(template, file, { bodies, frames, text = "ma
   for (let i = 0; i < bodies; ++i) {
     const ball = shape("sphere", 0.1, 0.1, 0.1);
     list[i + 1] = { name: i === 0 ? text : `ball ${i}`, entity: "ball", moves: "free", field: false, shape: ball, collides: ball };
-    const x = i % side, z = Math.floor(i / side), speed = 3 + (i % 7) * 0.3;
+    const x = i % side, z = Math.floor(i / side), speed = slowest + (i % 7) * 0.3;
     const flight = (2 * speed) / 9.8;
     for (let t = 0; t < end; t += flight) {
       start.push(t); duration.push(flight); layout.push(2, 255, 3, 0, 255);
@@ -54,7 +54,7 @@ export async function syntheticPage(template, file, { bodies, frames, text = "ma
     const [type, Kind] = kinds[name] ?? ["f64", Float64Array];
     add(`event.${name}`, type, Kind, values);
   }
-  const run = { title: text, summary: text, method: text, note: text, reason: "", bodies: list, arrays };
+  const run = { title: text, summary: text, method: text, note: text, reason, bodies: list, arrays };
   const json = JSON.stringify({ program: "synthetic", runs: { 0: run } }).replaceAll("<", "\\u003c");
   const data = `<script type="application/json" id="kairos-run">${json}</script>\n` +
     `<script type="text/plain" id="kairos-numbers-0">${Buffer.concat(parts).toString("base64")}</script>`;

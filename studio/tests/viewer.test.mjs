@@ -2,9 +2,10 @@
 import assert from "node:assert/strict";
 import { readFile, stat } from "node:fs/promises";
 import { createRequire } from "node:module";
-import { join } from "node:path";
+import { dirname, join } from "node:path";
 import { after, before, test } from "node:test";
-import { browser, folder, kairos, open } from "./pages.mjs";
+import { browser, folder, kairos, open, program } from "./pages.mjs";
+import { syntheticPage } from "./synthetic.mjs";
 
 const axe = await readFile(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 let chrome, place;
@@ -145,6 +146,21 @@ test("two methods go in step, and a part inside another is told and shown", asyn
   assert.ok(found, "the thesis' ball never sinks in");
   assert.equal(found[1], 0);
   assert.match(await page.textContent("#status"), /B: .* m inside /);
+  await context.close();
+});
+
+test("a run that stopped says why; one goes to the time and the body with a click", async () => {
+  const file = join(place.path, "stopped.html");
+  await syntheticPage(join(dirname(program), "../studio/viewer.html"), file,
+    { bodies: 4, frames: 60, reason: "accumulation: 'floor' and 'ball 2' stay in touch" });
+  const { page, context, said } = await open(chrome, file);
+  assert.match(await page.textContent("#problem-text"), /stopped at 1\.?0* s: accumulation: 'floor' and 'ball 2'/);
+  await page.click("#problem-show");
+  assert.equal(await time(page), 1);
+  assert.equal(await page.evaluate(() => window.kairos.runs[0].bodies[window.kairos.body].name), "ball 2");
+  const off = await page.evaluate(() => window.kairos.stage.controls.target.distanceTo(window.kairos.stage.placeOf(window.kairos.body, 1, 1)));
+  assert.ok(off < 1e-9, `looked at ${off} m beside it`);
+  assert.deepEqual(spoken(said), []);
   await context.close();
 });
 

@@ -19,6 +19,16 @@ const emptyScene = `name = "mine"\nduration = 10.0\nframe = "1/60"\nG = 9.8\n
 [[body]]\nname = "floor"\nentity = "wall"\nshape = "half-space"\n
 [[body]]\nname = "ball"\nentity = "ball"\nradius = 0.5\nmass = 1.0\nposition = [0.0, 3.0, 0.0]\n`;
 
+/** What of a body's text is a size, as it is written. */
+function sizesOf(values: Map<string, string>): Map<string, number[]> {
+  const found = new Map<string, number[]>();
+  for (const key of ["radius", "length", "height", "half_extents"]) {
+    const text = values.get(key);
+    if (text !== undefined) found.set(key, key === "half_extents" ? numbersOf(text, [1, 1, 1]) : numbersOf(`[${text}]`, [1]));
+  }
+  return found;
+}
+
 /** A run is stopped after so long a computation, s. */
 const longest = 20;
 
@@ -41,7 +51,7 @@ export class Studio {
   private later: Later[] | null = null;
   private refit = true;
   private pending = 0;
-  private taken = { position: [0, 0, 0], orientation: new Quaternion(), size: [1], name: "" };
+  private taken = { position: [0, 0, 0], orientation: new Quaternion(), sizes: new Map<string, number[]>(), name: "" };
   /** What was answered last, and how long it took, ms. */
   outcome: Outcome | null = null;
 
@@ -286,8 +296,12 @@ export class Studio {
       name: this.body,
       position: now ? [state.px, state.py, state.pz] : numbersOf(values.get("position"), [0, 0, 0]),
       orientation: now ? new Quaternion(state.qx, state.qy, state.qz, state.qw) : new Quaternion(x, y, z, w),
-      size: values.has("radius") ? numbersOf(`[${values.get("radius")}]`, [1]) : numbersOf(values.get("half_extents"), [1, 1, 1]),
+      sizes: sizesOf(values),
     };
+    if (list("tool").value === "size" && this.taken.sizes.size === 0) {
+      this.say(`${this.body} is told by no radius, length or half extents: its size is changed in the text`);
+      return false;
+    }
     this.editor.separate();
     return true;
   }
@@ -300,7 +314,7 @@ export class Studio {
   }
 
   private deed(_body: number, deed: Deed, dragged = true): void {
-    const { name, position, orientation, size } = this.taken;
+    const { name, position, orientation, sizes } = this.taken;
     const line = () => bodyLines(this.editor.text).get(name) ?? -1;
     const scale = this.viewer!.worlds[0].radius;
     const set = (key: string, value: string) => this.editor.change([setKey(this.editor.text, line(), key, value)], dragged);
@@ -310,8 +324,10 @@ export class Studio {
     const moved = position.map((x, k) => round(x + deed.by.getComponent(k)));
     const q = deed.turn.clone().multiply(orientation).normalize();
     if (tool === "size") {
-      const values = size.map((x) => tomlNumber(x * deed.factor, scale));
-      set(size.length === 1 ? "radius" : "half_extents", size.length === 1 ? values[0] : `[${values.join(", ")}]`);
+      for (const [key, size] of sizes) {
+        const values = size.map((x) => tomlNumber(x * deed.factor, scale));
+        set(key, key === "half_extents" ? `[${values.join(", ")}]` : values[0]);
+      }
     } else if (tool === "turn") {
       set("axis_angle", "");
       set("orientation", tomlVector([q.w, q.x, q.y, q.z]));

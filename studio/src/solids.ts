@@ -1,0 +1,67 @@
+// The surfaces of shapes as triangles, in two tones, so that one sees them turn.
+import { BoxGeometry, BufferAttribute, BufferGeometry, CapsuleGeometry, ConeGeometry, CylinderGeometry, IcosahedronGeometry, SphereGeometry, Vector3 } from "three";
+import { ConvexGeometry } from "three/addons/geometries/ConvexGeometry.js";
+import type { Shape } from "./data";
+
+/** Pieces of a turn: of many each is small, and coarser. */
+const around = (many: number) => (many <= 40 ? 32 : many <= 400 ? 20 : 12);
+
+/** Darker where `dark` says; vertices of one triangle may differ. */
+function toned(geometry: BufferGeometry, dark: (x: number, y: number, z: number) => boolean): BufferGeometry {
+  const position = geometry.getAttribute("position");
+  const tones = new Float32Array(3 * position.count);
+  for (let i = 0; i < position.count; ++i) {
+    tones.fill(dark(position.getX(i), position.getY(i), position.getZ(i)) ? 0.72 : 1, 3 * i, 3 * i + 3);
+  }
+  geometry.setAttribute("color", new BufferAttribute(tones, 3));
+  return geometry;
+}
+
+const octants = (x: number, y: number, z: number) => x * y * z > 1e-6;
+const quarters = (x: number, _y: number, z: number) => x * z > 1e-9;
+
+/** All points within `rounding` of the hull of some points: each of them as a small ball. */
+export function hullGeometry(shape: Shape): BufferGeometry {
+  const { points = [], rounding = 0 } = shape;
+  const corners: Vector3[] = [];
+  const ball = new IcosahedronGeometry(1, 2).getAttribute("position");
+  for (let k = 0; k < points.length; k += 3) {
+    const corner = new Vector3(points[k], points[k + 1], points[k + 2]);
+    if (!(rounding > 0)) corners.push(corner);
+    else for (let i = 0; i < ball.count; ++i) corners.push(new Vector3().fromBufferAttribute(ball, i).multiplyScalar(rounding).add(corner));
+  }
+  const geometry = new ConvexGeometry(corners);
+  geometry.setAttribute("color", new BufferAttribute(new Float32Array(3 * geometry.getAttribute("position").count).fill(1), 3));
+  return geometry;
+}
+
+/** What has the same key is drawn with the same triangles, `stretch` times as large along each axis. */
+export function solidKey(shape: Shape): string {
+  if (shape.kind === "capsule") return `capsule ${(shape.length! / shape.radius!).toPrecision(6)}`;
+  if (shape.kind === "hull") return `hull ${shape.rounding} ${shape.points!.join(" ")}`;
+  return shape.kind;
+}
+
+/** Triangles of a body that is one of `many` like it. */
+export function solidGeometry(shape: Shape, many: number): BufferGeometry {
+  const n = around(many);
+  switch (shape.kind) {
+    case "sphere": return toned(new SphereGeometry(1, n, (3 * n) / 4), octants);
+    case "capsule": return toned(new CapsuleGeometry(1, shape.length! / shape.radius!, n / 4, n), quarters);
+    case "cylinder": return toned(new CylinderGeometry(1, 1, 2, n), quarters);
+    case "cone": return toned(new ConeGeometry(1, 1, n).translate(0, 0.25, 0), quarters);
+    case "hull": return hullGeometry(shape);
+    default: return new BoxGeometry(2, 2, 2);
+  }
+}
+
+export function stretch(shape: Shape, out: Vector3): Vector3 {
+  const { radius = 1, length = 1 } = shape;
+  switch (shape.kind) {
+    case "capsule": return out.setScalar(radius);
+    case "cylinder": return out.set(radius, length / 2, radius);
+    case "cone": return out.set(radius, length, radius);
+    case "hull": return out.setScalar(1);
+    default: return out.set(shape.x, shape.y, shape.z);
+  }
+}
