@@ -10,7 +10,8 @@ PANELS = {
               ("drift", "top box from its place / m", "Drift"),
               ("energy_error", "|energy error| / energy", "Energy")),
     "incline": (("distance_error", "error of the distance / m", "Sliding 2 m"),
-                ("max_penetration", "deepest overlap / m", "Sinking")),
+                ("max_penetration", "deepest overlap / m", "Sinking"),
+                ("friction_error", "error of the work / J", "Work of friction")),
     "dominoes": (("end_x", "last domino at the end, x / m", "Where the last one lies"),
                  ("max_penetration", "deepest overlap / m", "Sinking")),
 }

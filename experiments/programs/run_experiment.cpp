@@ -5,6 +5,7 @@
 #include "experiments/ablation/ablation_experiment.hpp"
 #include "experiments/extremes/extremes_experiment.hpp"
 #include "experiments/realtime/realtime_experiment.hpp"
+#include "experiments/references/references_experiment.hpp"
 #include "experiments/tradeoff/tradeoff_experiment.hpp"
 
 #include <fmt/format.h>
@@ -16,10 +17,11 @@
 namespace kairos::experiments {
 namespace {
 
-constexpr std::array<ExperimentProgram, 4> programs{{{"tradeoff", run_tradeoff},
+constexpr std::array<ExperimentProgram, 5> programs{{{"tradeoff", run_tradeoff},
                                                      {"extremes", run_extremes},
                                                      {"real-time", run_realtime},
-                                                     {"ablation", run_ablation}}};
+                                                     {"ablation", run_ablation},
+                                                     {"references", run_references}}};
 
 const ExperimentProgram& program_of(const ExperimentSpec& spec) {
   std::vector<std::string_view> names;

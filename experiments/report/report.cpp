@@ -182,6 +182,10 @@ constexpr Headline headlines[] = {
     {"tradeoff",
      "Once a frame, sixteen times the frames buy one digit, whatever the integrator; from impact "
      "to impact the same work is a thousand times nearer."},
+    {"references",
+     "Blocks, balls, stacks and joints in contact that lasts: from event to event a run gives the "
+     "numbers that are known, digit by digit; schemes that step learn at the end of a frame what "
+     "began inside it."},
     {"real-time", "Frames that come late do not concern event-driven: it draws what it knows."},
     {"extremes",
      "From impact to impact, with a detector that locates, nothing is wrong in silence: what "
