@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <optional>
 
 namespace kairos::ccd {
@@ -109,6 +111,7 @@ class Advancement {
   TimeOfImpact advance_from(Look at) {
     const int budget = work_allowed(at.t());
     const int first = evaluations_;
+    const double repeats = at.t() + period(at.k);
     int near = 0;  // looks within the tolerance, one after the other
     while (true) {
       const bool spent = evaluations_ > budget;
@@ -123,7 +126,7 @@ class Advancement {
       }
       renew_bounds(at.t());
       const double next = next_after(at, (evaluations_ - first) % looks_between_hulls == 0);
-      if (next >= motion_.duration()) {
+      if (next >= std::min(motion_.duration(), repeats)) {
         return separated();
       }
       if (next > at.t()) {
@@ -146,6 +149,16 @@ class Advancement {
     const double angle = spin() > 0.0 ? spin() * (motion_.duration() - t) : 0.0;
     const double counted = angle < most_radians ? angle : most_radians;
     return most_evaluations + static_cast<int>(evaluations_per_radian * counted);
+  }
+
+  /// After how long all is as it was, s: one body spins in its place and the other stays.
+  [[nodiscard]] double period(const Kinematics& k) const {
+    const bool alone = motion_.simple() && k.v.isZero(0.0) && k.c.isZero(0.0) &&
+                       (motion_.turns_a() ? motion_.spins_a() && !motion_.turns_b()
+                                          : motion_.turns_b() && motion_.spins_b());
+    constexpr double turn =
+        2.0 * std::numbers::pi * (1.0 + 1e-12);  // and the rounding of both ends
+    return alone && spin() > 0.0 ? turn / spin() : std::numeric_limits<double>::infinity();
   }
 
   /// Angular speed of bodies that turn at constant rates, rad/s.
@@ -184,7 +197,13 @@ class Advancement {
     const double horizon = std::min(remaining, bounds_.until - at.t());
     double step = 0.0;
     if (try_hulls && spin() * remaining > 1.0) {
-      step = step_along(at.k, between_hulls(kind_, motion_, at.k, at.witness), bounds_, horizon);
+      Witness hulls = between_hulls(kind_, motion_, at.k, at.witness);
+      if (!(hulls.gap > at.k.error)) {
+        Witness nearest = at.witness;
+        nearest.n = between_spun_boxes(kind_, motion_, at.k);
+        hulls = between_hulls(kind_, motion_, at.k, nearest);
+      }
+      step = step_along(at.k, hulls, bounds_, horizon);
     }
     if (step * spin() < 1.0) {
       step = std::max(step, safe_step(at.k, at.witness, bounds_, horizon));

@@ -4,6 +4,7 @@
 #include "ccd/core_of_shape.hpp"
 #include "ccd/moving_cores.hpp"
 #include "ccd/roundoff.hpp"
+#include "ccd/spun_box.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -157,6 +158,19 @@ Witness between_hulls(PairKind kind, const PairMotion& motion, const Kinematics&
     }
   }
   return best;
+}
+
+Vector3 between_spun_boxes(PairKind kind, const PairMotion& motion, const Kinematics& k) {
+  if (against_plane(kind) || motion.has_cores() || (motion.turns_a() && !motion.spins_a()) ||
+      (motion.turns_b() && !motion.spins_b())) {
+    return Vector3::Zero();
+  }
+  const SpunBox a = motion.turns_a()
+                        ? SpunBox::spinning(motion.half_a(), Vector3::Zero(), k.R_WA, k.w_a)
+                        : SpunBox(motion.half_a(), Vector3::Zero(), k.R_WA);
+  const SpunBox b = motion.turns_b() ? SpunBox::spinning(motion.half_b(), k.d, k.R_WB, k.w_b)
+                                     : SpunBox(motion.half_b(), k.d, k.R_WB);
+  return direction_between(a, b, Vector3::Zero());
 }
 
 double clear_of_balls(PairKind kind, const PairMotion& motion) {

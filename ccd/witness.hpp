@@ -62,6 +62,10 @@ enum class PairKind {
 /// is negative infinity where a body turns otherwise. `along`: a direction to begin with.
 [[nodiscard]] Witness between_hulls(PairKind kind, const PairMotion& motion, const Kinematics& k,
                                     const Witness& along);
+/// The direction between the nearest points of these hulls, for boxes and spheres: dearer than the
+/// directions that `between_hulls` tries, and the best there is. 0 if there is none.
+[[nodiscard]] Vector3 between_spun_boxes(PairKind kind, const PairMotion& motion,
+                                         const Kinematics& k);
 /// A time up to which the balls around two bodies (the ball and a plane that does not turn) are
 /// proven apart, whatever turns; 0 if they are not apart now, or if there are none. Costs no bound
 /// of a rotation.
