@@ -21,7 +21,7 @@ constexpr std::array<ExperimentProgram, 5> programs{{{"tradeoff", run_tradeoff},
                                                      {"extremes", run_extremes},
                                                      {"real-time", run_realtime},
                                                      {"ablation", run_ablation},
-                                                     {"references", run_references}}};
+                                                     {"contact-truths", run_references}}};
 
 const ExperimentProgram& program_of(const ExperimentSpec& spec) {
   std::vector<std::string_view> names;

@@ -182,7 +182,7 @@ constexpr Headline headlines[] = {
     {"tradeoff",
      "Once a frame, sixteen times the frames buy one digit, whatever the integrator; from impact "
      "to impact the same work is a thousand times nearer."},
-    {"references",
+    {"contact-truths",
      "Blocks, balls, stacks and joints in contact that lasts: from event to event a run gives the "
      "numbers that are known, digit by digit; schemes that step learn at the end of a frame what "
      "began inside it."},

@@ -2,12 +2,14 @@
 
 #include "experiments/output/atomic_file.hpp"
 #include "experiments/report/report_html.hpp"
+#include "experiments/run_error.hpp"
 
 #include <fmt/format.h>
 
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string_view>
 
 namespace kairos::experiments {
@@ -78,8 +80,12 @@ std::string neighbours(const std::vector<SitePage>& pages, std::size_t i) {
 
 void write_site(const std::string& folder, std::vector<SitePage> pages, const SiteFrame& frame) {
   const Places places = places_of(pages);
+  std::set<std::string> files;
   for (std::size_t i = 0; i < pages.size(); ++i) {
     const SitePage& page = pages[i];
+    if (!files.insert(page.file).second) {
+      throw RunError(fmt::format("{}: two pages of the report have this name", page.file));
+    }
     const bool first = i == 0;
     const std::string text = fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"

@@ -22,7 +22,8 @@ struct SiteFrame {
 
 /// Writes the pages of a site into `folder`. Each has the contents of all beside it, and links to
 /// the page before and after; links to places of other pages lead there. Pictures are loaded when
-/// they are near. Throws `RunError` where a page cannot be written.
+/// they are near. Throws `RunError` where a page cannot be written, or two have the
+/// same file.
 void write_site(const std::string& folder, std::vector<SitePage> pages, const SiteFrame& frame);
 
 }  // namespace kairos::experiments

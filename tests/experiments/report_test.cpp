@@ -8,6 +8,8 @@
 #include "experiments/report/markdown.hpp"
 #include "experiments/report/paper.hpp"
 #include "experiments/report/report_html.hpp"
+#include "experiments/report/report_site.hpp"
+#include "experiments/run_error.hpp"
 #include "simulation/registry.hpp"
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
@@ -224,4 +226,14 @@ TEST_CASE("the paper cites what is in the bibliography, each entry of it once", 
     CHECK(keys.contains(key));
     CHECK(has(paper.references, std::string("ref-") + key));
   }
+}
+
+TEST_CASE("no page of the report is written over by another", "[report]") {
+  const TemporaryFolder folder;
+  const SitePage one{"references.html", "An experiment", "", "", "<p>one</p>"};
+  const SitePage other{"references.html", "References", "", "", "<p>other</p>"};
+  const std::string site = folder.path("site");
+  std::filesystem::create_directory(site);
+  CHECK_NOTHROW(write_site(site, {one}, {}));
+  CHECK_THROWS_AS(write_site(site, {one, other}, {}), RunError);
 }
