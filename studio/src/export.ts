@@ -45,9 +45,12 @@ export class Film {
     this.recorder.start(500);
   }
 
-  /** The film, of half a second at least: an encoder gives nothing of a moment. */
+  /** The film, of half a second at least, and until a picture has come out of the encoder: it gives nothing of a moment, and
+   *  takes its time on a busy machine. */
   async stop(): Promise<Blob> {
-    while (performance.now() < this.began + 500) {
+    const header = 500; // bytes
+    const waits = () => performance.now() - this.began < (this.parts.some((part) => part.size > header) ? 500 : 10_000);
+    while (waits()) {
       await new Promise((next) => requestAnimationFrame(next));
       const context = this.canvas.getContext("2d")!;
       context.drawImage(this.canvas, 0, 0, 1, 1, 0, 0, 1, 1); // a picture counts where something is drawn

@@ -136,6 +136,21 @@ const pixel = (p, at) => p.evaluate((place) => {
   return { x: box.x + view.x + (0.5 + v.x / 2) * view.width, y: box.y + view.y + (0.5 - v.y / 2) * view.height };
 }, at);
 
+/** What a page saves, by name, once there are `count` files. */
+async function downloads(p, count, act) {
+  const coming = [];
+  const all = new Promise((done) => p.on("download", (each) => { if (coming.push(each) === count) done(); }));
+  await act();
+  await all;
+  p.removeAllListeners("download");
+  const files = {};
+  for (const each of coming) {
+    files[each.suggestedFilename()] = join(place.path, each.suggestedFilename());
+    await each.saveAs(files[each.suggestedFilename()]);
+  }
+  return files;
+}
+
 test("a rally of 20 strokes by the pointer: event-driven passes 0, original some; each is seen again, the track is saved", async () => {
   const { page: p, context, said, asked } = await open(chrome, studioPage, {
     ready: () => window.game?.rally, hash: "#table-tennis", viewport: { width: 950, height: 520 },
@@ -173,10 +188,23 @@ test("a rally of 20 strokes by the pointer: event-driven passes 0, original some
   assert.match(await p.textContent("#play-said"), /let the ball through at/);
   await p.click("#play-back");
   await p.waitForFunction((were) => window.game.rally.count > were, frames);
-  // The rally as a scene, of which the program's reader makes the same.
+  // The rally is saved, the pointer's track with it, and run by the program.
+  await p.click("#play-pause");
+  const saved = await downloads(p, 4, () => p.click("#play-save"));
+  const scene = Object.values(saved).find((file) => file.endsWith(".toml"));
+  const out = join(place.path, "pointer");
+  await kairos("run", scene, "--out", out);
+  const events = (await readFile(join(out, "events.csv"), "utf8")).split("\n").map((line) => line.split(","));
+  const hits = events.filter(([, , kind, a, b]) => kind === "impact" && [a, b].includes("bat") && [a, b].includes("ball")).length;
+  assert.ok(hits >= counts["event-driven"].met, `${hits} impacts of ${counts["event-driven"].met} strokes`);
+  // The rally as a scene: the page's engine makes of it what the program makes of the saved files.
   await p.click("#play-open");
   await p.waitForFunction(() => window.studio.viewer.runs[0].title === "Table tennis" && window.studio.viewer.runs[0].end > 5 && window.studio.client.busy() === 0);
   assert.deepEqual(await p.evaluate(() => window.studio.outcome.errors), [null, null]);
+  const tables = await downloads(p, 3, () => p.click("#tables"));
+  for (const [name, file] of Object.entries(tables)) {
+    assert.ok((await readFile(file, "utf8")) === (await readFile(join(out, name), "utf8")), `${name} of the page is not the program's`);
+  }
   assert.deepEqual(said.filter((line) => !line.includes("GL Driver Message")), []);
   assert.deepEqual(asked, []);
   await context.close();
