@@ -1,8 +1,10 @@
 #include "ccd/advancement.hpp"
+#include "ccd/body_parts.hpp"
 #include "ccd/common_point.hpp"
 #include "ccd/moving_cores.hpp"
 #include "ccd/pair_motion.hpp"
-#include "ccd/roundoff.hpp"
+#include "ccd/parts_impact.hpp"
+#include "ccd/rounding/roundoff.hpp"
 #include "ccd/separation_function.hpp"
 
 #include <algorithm>
@@ -41,6 +43,9 @@ double safely_inside(PairKind kind, const PairMotion& motion, const Kinematics& 
 
 TimeOfImpact advance_to_separation(const MovingShape& a, const MovingShape& b, const Window& window,
                                    double tolerance) {
+  if (has_parts(a.shape) || has_parts(b.shape)) {
+    return parts_separation(a, b, window, tolerance);
+  }
   const PairKind kind = pair_kind(a.shape, b.shape);
   const PairMotion motion(a, b, window, Positions::heights);
   const double enough = tolerance > 0.0 ? tolerance : default_tolerance(a, b, window);

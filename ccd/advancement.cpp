@@ -1,12 +1,14 @@
 #include "ccd/advancement.hpp"
 
+#include "ccd/body_parts.hpp"
 #include "ccd/box_witness.hpp"
 #include "ccd/closed_form.hpp"
 #include "ccd/contact_patch.hpp"
 #include "ccd/core_patch.hpp"
 #include "ccd/descent_answer.hpp"
 #include "ccd/moving_cores.hpp"
-#include "ccd/roundoff.hpp"
+#include "ccd/parts_impact.hpp"
+#include "ccd/rounding/roundoff.hpp"
 #include "ccd/separation_function.hpp"
 
 #include <algorithm>
@@ -83,9 +85,23 @@ class Advancement {
         kind_(pair_kind(a.shape, b.shape)),
         motion_(a, b, window, Positions::heights) {}
 
-  TimeOfImpact run() {
-    const double clear = clear_of_balls(kind_, motion_);
-    if (clear > 0.0) {
+  Advancement(const MovingShape& a, const ConvexCore& part_of_a, const MovingShape& b,
+              const ConvexCore* part_of_b, const Window& window, const PartQuery& query)
+      : a_(a),
+        b_(b),
+        window_(window),
+        prove_(query.prove),
+        of_parts_(true),
+        most_evaluations_(query.most_evaluations),
+        tolerance_(query.tolerance),
+        kind_(part_of_b != nullptr ? PairKind::cores : PairKind::core_plane),
+        motion_(part_of_b != nullptr
+                    ? PairMotion({part_of_a, a.motion}, {*part_of_b, b.motion}, window)
+                    : PairMotion({part_of_a, a.motion}, b, window, Positions::heights)) {}
+
+  TimeOfImpact run(double from = 0.0) {
+    const double clear = std::max(from, clear_of_balls(kind_, motion_));
+    if (clear > from) {
       ++evaluations_;
       if (clear >= motion_.duration()) {
         return separated();
@@ -116,8 +132,8 @@ class Advancement {
     while (true) {
       const bool spent = evaluations_ > budget;
       near = at.gap() <= tolerance_ ? near + 1 : 0;
-      if (near > 0 && (spent || worth_resolving(at, near))) {
-        if (const auto answer = resolve_contact(at, spent)) {
+      if (near > 0 && ((spent && !of_parts_) || worth_resolving(at, near))) {
+        if (const auto answer = resolve_contact(at, spent && !of_parts_)) {
           return *answer;
         }
       }
@@ -148,7 +164,8 @@ class Advancement {
   [[nodiscard]] int work_allowed(double t) const {
     const double angle = spin() > 0.0 ? spin() * (motion_.duration() - t) : 0.0;
     const double counted = angle < most_radians ? angle : most_radians;
-    return most_evaluations + static_cast<int>(evaluations_per_radian * counted);
+    return of_parts_ ? most_evaluations_
+                     : most_evaluations + static_cast<int>(evaluations_per_radian * counted);
   }
 
   /// After how long all is as it was, s: one body spins in its place and the other stays.
@@ -448,6 +465,8 @@ class Advancement {
   MovingShape b_;
   Window window_;
   bool prove_;
+  bool of_parts_ = false;
+  int most_evaluations_ = 0;  ///< of parts
   double tolerance_;
   PairKind kind_;
   PairMotion motion_;
@@ -468,7 +487,7 @@ TimeOfImpact Advancement::at_contact(ToiStatus status, const Look& here, double 
   const double coordinates = reached(a_.motion.position, start_of(a_.motion, window_) + at.t()) +
                              reached(b_.motion.position, start_of(b_.motion, window_) + at.t()) +
                              at.k.d.lpNorm<1>() + motion_.radius_a() + motion_.radius_b();
-  if (at.gap() - at.k.error <= 64.0 * u * coordinates) {
+  if (!of_parts_ && at.gap() - at.k.error <= 64.0 * u * coordinates) {
     retreat_from_overlap(a_, b_, window_, answer);
     if (answer.t_lo != at.t()) {
       at = look(answer.t_lo);
@@ -554,7 +573,14 @@ double default_tolerance(const MovingShape& a, const MovingShape& b, const Windo
 
 TimeOfImpact advance_to_impact(const MovingShape& a, const MovingShape& b, const Window& window,
                                const AdvancementOptions& options) {
-  return Advancement(a, b, window, options).run();
+  return has_parts(a.shape) || has_parts(b.shape) ? parts_impact(a, b, window, options)
+                                                  : Advancement(a, b, window, options).run();
+}
+
+TimeOfImpact advance_parts(const MovingShape& a, const ConvexCore& part_of_a, const MovingShape& b,
+                           const ConvexCore* part_of_b, const Window& window,
+                           const PartQuery& query) {
+  return Advancement(a, part_of_a, b, part_of_b, window, query).run(query.from);
 }
 
 }  // namespace kairos::ccd

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/contact_detector.hpp"
+#include "ccd/pair_motion.hpp"
 
 namespace kairos::ccd {
 
@@ -21,6 +21,19 @@ struct AdvancementOptions {
 [[nodiscard]] TimeOfImpact advance_to_impact(const MovingShape& a, const MovingShape& b,
                                              const Window& window,
                                              const AdvancementOptions& options);
+
+/// What a query about a part of each of two bodies is told.
+struct PartQuery {
+  double tolerance = 0.0;  ///< m, > 0
+  bool prove = true;
+  double from = 0.0;         ///< they are proven apart up to here, window time, s
+  int most_evaluations = 0;  ///< then it is `undecided` at a gap above the tolerance
+};
+/// The same for a part of each of two bodies; none of b if that is a half-space. `t_lo` is true of
+/// the motions; what others compute there, rounded, is for who puts the answers together.
+[[nodiscard]] TimeOfImpact advance_parts(const MovingShape& a, const ConvexCore& part_of_a,
+                                         const MovingShape& b, const ConvexCore* part_of_b,
+                                         const Window& window, const PartQuery& query);
 
 /// When two shapes that overlap at the start part: advancement inside, by penetration depth over
 /// the greatest speed of any point.

@@ -1,6 +1,6 @@
 #include "ccd/ball_filter.hpp"
 
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 
 #include <algorithm>
 #include <cassert>

@@ -3,7 +3,7 @@
 #include "ccd/advancement.hpp"
 #include "ccd/pair_motion.hpp"
 #include "ccd/pair_overlap.hpp"
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 #include "ccd/shape_detector.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 #include "ccd/relative_boxes.hpp"
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 #include "core/circular.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "ccd/box_witness.hpp"
 
 #include "ccd/contact_patch.hpp"
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 
 #include <algorithm>
 #include <cmath>

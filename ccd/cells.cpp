@@ -2,7 +2,7 @@
 
 #include "ccd/cell_grid.hpp"
 #include "ccd/dynamic_tree.hpp"
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 #include "ccd/swept_windows.hpp"
 #include "core/archive.hpp"
 

@@ -3,7 +3,7 @@
 #include "ccd/descent_answer.hpp"
 #include "ccd/pair_overlap.hpp"
 #include "ccd/relative_boxes.hpp"
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 #include "ccd/shape_detector.hpp"
 #include "ccd/sphere_plane.hpp"
 #include "ccd/sphere_sphere.hpp"

@@ -4,6 +4,7 @@
 #include "ccd/core_of_shape.hpp"
 #include "ccd/nearest_points.hpp"
 #include "ccd/pair_overlap.hpp"
+#include "ccd/parts_at_rest.hpp"
 #include "ccd/placed_cores.hpp"
 
 #include <algorithm>
@@ -105,6 +106,9 @@ ContactManifold contact_manifold(const Shape& a, const Pose& pose_a, const Shape
                                  const Pose& pose_b, double reach) {
   if (shape_rank(a) > shape_rank(b)) {
     return turned_round(contact_manifold(b, pose_b, a, pose_a, reach));
+  }
+  if (has_parts(a) || has_parts(b)) {
+    return parts_manifold(a, pose_a, b, pose_b, reach);
   }
   if (is_convex_pair(a, b)) {
     return core_manifold(a, pose_a, b, pose_b, reach);

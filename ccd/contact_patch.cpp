@@ -1,7 +1,7 @@
 #include "ccd/contact_patch.hpp"
 
 #include "ccd/nearest_points.hpp"
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "ccd/convex_core.hpp"
 
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 #include "core/circular.hpp"
 
 #include <algorithm>
@@ -87,6 +87,61 @@ ConvexCore ConvexCore::of(const Polytope& polytope, double rounding) {
   return core;
 }
 
+ConvexCore ConvexCore::triangle(const Vector3* vertices,
+                                const std::array<std::uint32_t, 3>& corners) {
+  ConvexCore core;
+  core.kind_ = Kind::triangle;
+  core.triangle_ = vertices;
+  core.corners_ = corners;
+  for (std::size_t i = 0; i < 3; ++i) {
+    core.radius_ = std::max(core.radius_, core.corner(i).norm() * (1.0 + 4.0 * u));
+    core.extent_ = std::max(core.extent_, core.corner(i).lpNorm<1>());
+  }
+  return core;
+}
+
+/// Axes are off by 8 u an entry where they come from a quaternion, and are applied with as many
+/// roundings again as they are by the body's own turning: twice the extent has room for both.
+ConvexCore ConvexCore::placed(const PlacedCore& part) {
+  ConvexCore core;
+  core.kind_ = Kind::placed;
+  core.part_ = &part;
+  core.rounding_ = part.core.rounding_;
+  core.radius_ = (part.centre.norm() + part.core.radius_) * (1.0 + 32.0 * u);
+  core.extent_ = 2.0 * (part.centre.lpNorm<1>() + 1.75 * part.core.extent_);
+  core.width_ = part.core.width_;
+  return core;
+}
+
+bool ConvexCore::has_volume() const {
+  return kind_ == Kind::placed ? part_->core.has_volume() : kind_ > Kind::segment;
+}
+
+bool ConvexCore::is_round() const {
+  return kind_ == Kind::placed ? part_->core.is_round()
+                               : kind_ == Kind::cylinder || kind_ == Kind::cone;
+}
+
+ConvexCore::Line ConvexCore::line() const {
+  if (kind_ == Kind::placed) {
+    const Line inner = part_->core.line();
+    return {part_->centre + part_->axes * inner.middle, part_->axes * inner.direction, inner.half};
+  }
+  return {Vector3::Zero(), Vector3::UnitY(), sizes_.y()};
+}
+
+ConvexCore::Bend ConvexCore::bend(const Vector3& m) const {
+  if (kind_ == Kind::placed) {
+    const Bend inner = part_->core.bend(part_->axes.transpose() * m);
+    return {inner.radius, part_->axes * inner.tangent};
+  }
+  const double length = across(m);
+  if (!is_round() || !(length > 1e-6)) {
+    return {};
+  }
+  return {sizes_.x() / length, Vector3(m.z() / length, 0.0, -m.x() / length)};
+}
+
 /// All vertices are asked: walking uphill along edges may end short of the highest by any amount
 /// where edges are short.
 std::uint32_t ConvexCore::support_vertex(const Vector3& m) const {
@@ -115,6 +170,10 @@ double ConvexCore::support(const Vector3& m) const {
       return sizes_.x() * across(m) + sizes_.y() * std::abs(m.y());
     case Kind::cone:
       return std::max(sizes_.z() * m.y(), sizes_.x() * across(m) - sizes_.y() * m.y());
+    case Kind::triangle:
+      return std::max({m.dot(corner(0)), m.dot(corner(1)), m.dot(corner(2))});
+    case Kind::placed:
+      return m.dot(part_->centre) + part_->core.support(part_->axes.transpose() * m);
     case Kind::polytope:
       break;
   }
@@ -140,6 +199,14 @@ Vector3 ConvexCore::support_point(const Vector3& m) const {
       return sizes_.z() * m.y() >= sizes_.x() * across(m) - sizes_.y() * m.y()
                  ? Vector3(0.0, sizes_.z(), 0.0)
                  : on_rim(m, sizes_.x(), -sizes_.y());
+    case Kind::triangle: {
+      const double first = m.dot(corner(0));
+      const double second = m.dot(corner(1));
+      const double third = m.dot(corner(2));
+      return corner(third > std::max(first, second) ? 2 : second > first ? 1 : 0);
+    }
+    case Kind::placed:
+      return part_->centre + part_->axes * part_->core.support_point(part_->axes.transpose() * m);
     case Kind::polytope:
       break;
   }
@@ -170,24 +237,43 @@ Feature ConvexCore::feature(const Vector3& m, double noise) const {
   return best;
 }
 
-double ConvexCore::spun_support(const Vector3& n, const Vector3& w) const {
-  double most = 0.0;
-  if (kind_ == Kind::polytope) {
-    most = -infinity;
-    for (const Vector3& x : polytope_->vertices) {
-      most = std::max(most, turned(x, n, w));
-    }
-    return most;
+template <typename Visit>
+void ConvexCore::each_hull_point(const Visit& visit) const {
+  switch (kind_) {
+    case Kind::polytope:
+      for (const Vector3& x : polytope_->vertices) {
+        visit(x);
+      }
+      return;
+    case Kind::triangle:
+      for (std::size_t i = 0; i < 3; ++i) {
+        visit(corner(i));
+      }
+      return;
+    case Kind::placed:
+      return;
+    default:
+      break;
   }
   const double r = kind_ == Kind::box ? 0.0 : sizes_.x();
   const Vector3 low = kind_ == Kind::box ? Vector3(-sizes_) : Vector3(-r, -sizes_.y(), -r);
   const Vector3 high = kind_ == Kind::box ? sizes_ : Vector3(r, sizes_.z(), r);
   for (int corner = 0; corner < 8; ++corner) {
-    const Vector3 x((corner & 1) != 0 ? high.x() : low.x(), (corner & 2) != 0 ? high.y() : low.y(),
-                    (corner & 4) != 0 ? high.z() : low.z());
-    most = std::max(most, turned(x, n, w));
+    visit(Vector3((corner & 1) != 0 ? high.x() : low.x(), (corner & 2) != 0 ? high.y() : low.y(),
+                  (corner & 4) != 0 ? high.z() : low.z()));
   }
-  if (kind_ == Kind::box) {
+}
+
+double ConvexCore::spun_support(const Vector3& n, const Vector3& w) const {
+  double most = -infinity;
+  if (kind_ == Kind::placed) {
+    part_->core.each_hull_point([&](const Vector3& x) {
+      most = std::max(most, turned(part_->centre + part_->axes * x, n, w));
+    });
+    return most;
+  }
+  each_hull_point([&](const Vector3& x) { most = std::max(most, turned(x, n, w)); });
+  if (kind_ == Kind::polytope || kind_ == Kind::triangle || kind_ == Kind::box) {
     return most;
   }
   // About nearly its own axis it passes little more than itself: a turn about w differs from one

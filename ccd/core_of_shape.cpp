@@ -21,15 +21,24 @@ struct MakeCore {
   ConvexCore operator()(const Hull& hull) const {
     return ConvexCore::of(*hull.core, hull.rounding);
   }
+  ConvexCore operator()(const Mesh&) const { throw std::invalid_argument("a mesh is not convex"); }
+  ConvexCore operator()(const Compound&) const {
+    throw std::invalid_argument("a compound is not convex");
+  }
 };
 
 }  // namespace
 
 ConvexCore core_of(const Shape& shape) { return std::visit(MakeCore{}, shape); }
 
+ConvexCore core_around(const Shape& shape) {
+  return shape_rank(shape) > shape_rank(Hull{}) ? ConvexCore::box(bounding_box(shape).half_extents)
+                                                : core_of(shape);
+}
+
 bool needs_core(const Shape& shape) {
   const int rank = shape_rank(shape);
-  return rank >= shape_rank(Capsule{}) && rank <= shape_rank(Hull{});
+  return rank >= shape_rank(Capsule{}) && rank < shape_rank(HalfSpace{});
 }
 
 bool is_convex_pair(const Shape& a, const Shape& b) { return needs_core(a) || needs_core(b); }

@@ -1,7 +1,7 @@
 #include "ccd/core_patch.hpp"
 
 #include "ccd/nearest_points.hpp"
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 #include "core/circular.hpp"
 
 #include <algorithm>
@@ -37,7 +37,7 @@ struct Plane {
 
 /// Calls visit(point) for what may be highest along m.
 template <typename Visit>
-void for_each_corner(const ConvexCore& core, const Vector3& m, const Visit& visit) {
+void for_each_corner_here(const ConvexCore& core, const Vector3& m, const Visit& visit) {
   const Vector3& size = core.sizes();
   const auto rim = [&](double y) {
     const double first = arc_tangent(m.z(), m.x());
@@ -71,7 +71,26 @@ void for_each_corner(const ConvexCore& core, const Vector3& m, const Visit& visi
       for (const Vector3& x : core.polytope()->vertices) {
         visit(x);
       }
+      return;
+    case ConvexCore::Kind::triangle:
+      for (std::size_t i = 0; i < 3; ++i) {
+        visit(core.corner(i));
+      }
+      return;
+    case ConvexCore::Kind::placed:  // a part is none that is placed itself
+      return;
   }
+}
+
+template <typename Visit>
+void for_each_corner(const ConvexCore& core, const Vector3& m, const Visit& visit) {
+  const PlacedCore* part = core.part();
+  if (part == nullptr) {
+    for_each_corner_here(core, m, visit);
+    return;
+  }
+  for_each_corner_here(part->core, part->axes.transpose() * m,
+                       [&](const Vector3& x) { visit(Vector3(part->centre + part->axes * x)); });
 }
 
 /// The outline of points seen along a direction [Andrew1979].
@@ -219,6 +238,14 @@ Vector3 FacePolygon::centroid() const {
     sum += (p.cross(q).dot(area) / (doubled * doubled)) * (p + q) / 3.0;
   }
   return points[0] + sum;
+}
+
+FacePolygon outline_of(std::span<const Vector3> points, const Vector3& m, double size) {
+  Outline outline(m);
+  for (const Vector3& x : points) {
+    outline.add(x);
+  }
+  return outline.polygon(size);
 }
 
 FacePolygon highest_face(const ConvexCore& core, const Vector3& m, double within) {

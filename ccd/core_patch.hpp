@@ -3,6 +3,7 @@
 #include "ccd/core_pair.hpp"
 
 #include <array>
+#include <span>
 
 namespace kairos::ccd {
 
@@ -24,6 +25,10 @@ struct FacePolygon {
   [[nodiscard]] Vector3 centroid() const;
 };
 
+/// The outline of points seen along the unit direction m, of at most 64; `size`: of what they are
+/// on.
+[[nodiscard]] FacePolygon outline_of(std::span<const Vector3> points, const Vector3& m,
+                                     double size);
 /// The points of a core that are at most `within` (m) below its highest along the unit direction m,
 /// corners of their outline seen along it; of a circle sixteen. Body frame.
 [[nodiscard]] FacePolygon highest_face(const ConvexCore& core, const Vector3& m, double within);

@@ -3,7 +3,8 @@
 #include "ccd/expanding_polytope.hpp"
 #include "ccd/nearest_points.hpp"
 #include "ccd/polish.hpp"
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
+#include "ccd/triangle_witness.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,10 +26,13 @@ Vector3 any_across(const Vector3& x) {
 
 /// Points and segments: no volume, but a closed form.
 CoreWitness between_lines(const CorePair& pair) {
-  const Vector3 along_a = pair.R_WA.col(1);
-  const Vector3 along_b = pair.R_WB.col(1);
-  const NearestPoints nearest = nearest_of_segments(Vector3::Zero(), along_a, pair.a.sizes().y(),
-                                                    pair.d, along_b, pair.b.sizes().y());
+  const ConvexCore::Line a = pair.a.line();
+  const ConvexCore::Line b = pair.b.line();
+  const Vector3 along_a = pair.R_WA * a.direction;
+  const Vector3 along_b = pair.R_WB * b.direction;
+  const Vector3 between = pair.d + pair.R_WB * b.middle - pair.R_WA * a.middle;
+  const NearestPoints nearest = nearest_of_segments(pair.R_WA * a.middle, along_a, a.half,
+                                                    pair.d + pair.R_WB * b.middle, along_b, b.half);
   CoreWitness witness;
   witness.on_a = nearest.on_a;
   witness.on_b = nearest.on_b;
@@ -36,7 +40,7 @@ CoreWitness between_lines(const CorePair& pair) {
   const auto try_along = [&](const Vector3& n) {
     const double length = n.norm();
     if (length > 0.0) {
-      const Vector3 unit = (n.dot(pair.d) < 0.0 ? -1.0 : 1.0) / length * n;
+      const Vector3 unit = (n.dot(between) < 0.0 ? -1.0 : 1.0) / length * n;
       const double separation = pair.separation(unit);
       if (separation > witness.separation) {
         witness.separation = separation;
@@ -54,9 +58,10 @@ CoreWitness between_lines(const CorePair& pair) {
 }
 
 double thinner(const CorePair& pair) {
-  const double a = pair.a.has_volume() ? pair.a.width() : infinity;
-  const double b = pair.b.has_volume() ? pair.b.width() : infinity;
-  return std::min(a, b);
+  const double a = pair.a.width() > 0.0 ? pair.a.width() : infinity;
+  const double b = pair.b.width() > 0.0 ? pair.b.width() : infinity;
+  const double least = std::min(a, b);
+  return std::isfinite(least) ? least : pair.size();  // a triangle and what is thin as well
 }
 
 /// Expands with b moved by `length` against n; keeps what separates better.
@@ -112,11 +117,26 @@ void prove_overlap(const CorePair& pair, double error, CoreWitness& witness) {
   keep(pair, expand_pushed(pair, witness.n, pushed, 0.25 * depth, error), witness);
 }
 
+/// Around a vertex of a triangle directions that have nothing in common separate nearly as well: an
+/// expanded polytope may end far from where GJK was, which was off by its noise only.
+void keep_polished(const CorePair& pair, const GjkResult& found, CoreWitness& witness) {
+  Vector3 n = found.n;
+  double separation = found.lower;
+  polish(pair, found.on_b - found.on_a, n, separation);
+  if (separation > witness.separation) {
+    witness.n = n;
+    witness.separation = separation;
+  }
+}
+
 }  // namespace
 
 CoreWitness core_witness(const CorePair& pair, double reach, double precision, double error) {
   if (!pair.a.has_volume() && !pair.b.has_volume()) {
     return between_lines(pair);
+  }
+  if (pair.a.kind() == ConvexCore::Kind::triangle && pair.b.kind() == ConvexCore::Kind::triangle) {
+    return triangle_witness(pair, error);
   }
   const double length = pair.d.norm();
   const Vector3 start = length > 0.0 ? Vector3(pair.d / length) : Vector3(Vector3::UnitY());
@@ -144,6 +164,9 @@ CoreWitness core_witness(const CorePair& pair, double reach, double precision, d
     keep(pair, expand(pair, Vector3::Zero(), found.simplex, error, error), witness);
   }
   polish(pair, witness.on_b - witness.on_a, witness.n, witness.separation);
+  if (!found.inside && (pair.a.width() == 0.0 || pair.b.width() == 0.0)) {
+    keep_polished(pair, found, witness);
+  }
   if (witness.depth == 0.0 && witness.separation < -2.0 * error) {
     prove_overlap(pair, error, witness);
   }

@@ -1,6 +1,6 @@
 #include "ccd/expanding_polytope.hpp"
 
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 
 #include <algorithm>
 #include <cmath>

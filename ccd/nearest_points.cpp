@@ -1,6 +1,6 @@
 #include "ccd/nearest_points.hpp"
 
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 
 #include "ccd/core_of_shape.hpp"
 #include "ccd/plane_normal.hpp"
-#include "ccd/rotation_matrix.hpp"
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/rotation_matrix.hpp"
+#include "ccd/rounding/roundoff.hpp"
 #include "ccd/sine_cosine.hpp"
 
 #include <algorithm>
@@ -120,40 +120,72 @@ double angular_acceleration_bound(const Motion& motion, double s0, double s1, do
 
 }  // namespace
 
+PairMotion::PairMotion(const Motion& a, const Motion& b, const Window& window)
+    : motion_a_(&a),
+      motion_b_(&b),
+      s_a_(local_start(a, window)),
+      s_b_(local_start(b, window)),
+      duration_(window.duration),
+      error_reach_(a.error_radius + b.error_radius) {}
+
+PairMotion::PairMotion(const MovingCore& a, const MovingCore& b, const Window& window)
+    : PairMotion(a.motion, b.motion, window) {
+  set_cores(a.core, &b.core);
+  finish(Positions::whole);
+}
+
+PairMotion::PairMotion(const MovingCore& a, const MovingShape& b, const Window& window,
+                       Positions positions)
+    : PairMotion(a.motion, b.motion, window) {
+  set_plane(std::get<HalfSpace>(b.shape));
+  set_cores(a.core, nullptr);
+  finish(positions);
+}
+
 PairMotion::PairMotion(const MovingShape& a, const MovingShape& b, const Window& window,
                        Positions positions)
-    : motion_a_(&a.motion),
-      motion_b_(&b.motion),
-      s_a_(local_start(a.motion, window)),
-      s_b_(local_start(b.motion, window)),
-      duration_(window.duration) {
+    : PairMotion(a.motion, b.motion, window) {
   const RoundedBox box_a = rounded_box(a.shape);
   const RoundedBox box_b = rounded_box(b.shape);
   half_a_ = box_a.half;
   half_b_ = box_b.half;
   radius_a_ = half_a_.norm() * (1.0 + 4.0 * u);
   radius_b_ = half_b_.norm() * (1.0 + 4.0 * u);
-  error_reach_ = a.motion.error_radius + b.motion.error_radius;
   reach_ = (box_a.radius + box_b.radius) + error_reach_;
   extent_a_ = half_a_.sum();
   extent_b_ = half_b_.sum();
   if (const auto* half_space = std::get_if<HalfSpace>(&b.shape)) {
-    plane_b_ = true;
-    normal_b_ = half_space->normal_B;
-    // Unit to the roundings of who gave it; the product below is rounded too.
-    rotation_error_ += (normal_b_.array() != 0.0).count() == 1 ? 0.0 : 16.0 * u;
+    set_plane(*half_space);
   }
   oriented_a_ = box_a.oriented;
   oriented_b_ = box_b.oriented;
   if (is_convex_pair(a.shape, b.shape)) {
-    set_cores(a.shape, b.shape);
+    const ConvexCore core_a = core_around(a.shape);
+    if (plane_b_) {
+      set_cores(core_a, nullptr);
+    } else {
+      const ConvexCore core_b = core_around(b.shape);
+      set_cores(core_a, &core_b);
+    }
   }
-  turns_a_ = oriented_a_ && a.motion.rotation != RotationKind::fixed;
-  turns_b_ = oriented_b_ && b.motion.rotation != RotationKind::fixed;
+  finish(positions);
+}
+
+void PairMotion::set_plane(const HalfSpace& half_space) {
+  plane_b_ = true;
+  oriented_b_ = true;
+  normal_b_ = half_space.normal_B;
+  // Unit to the roundings of who gave it; the product below is rounded too.
+  rotation_error_ += (normal_b_.array() != 0.0).count() == 1 ? 0.0 : 16.0 * u;
+}
+
+void PairMotion::finish(Positions positions) {
+  turns_a_ = oriented_a_ && motion_a_->rotation != RotationKind::fixed;
+  turns_b_ = oriented_b_ && motion_b_->rotation != RotationKind::fixed;
 
   // A normal that is an axis of its body rounds nothing where that is not turned.
   const bool along_axis = (normal_b_.array() != 0.0).count() == 1;
-  const bool tilted = !(along_axis && is_identity(b.motion.quaternion[0]));
+  const bool tilted = !(along_axis && is_identity(motion_b_->quaternion[0]));
   if (plane_b_ && !turns_b_ && tilted && positions == Positions::heights) {
     subtract_heights();
   } else {
@@ -171,23 +203,31 @@ PairMotion::PairMotion(const MovingShape& a, const MovingShape& b, const Window&
 
 /// A rotated point of a core is off by the error of the rotation's entries times the sum of the
 /// magnitudes of its coordinates, in each component: along a unit direction by sqrt(3) times that.
-void PairMotion::set_cores(const Shape& a, const Shape& b) {
+void PairMotion::set_cores(const ConvexCore& a, const ConvexCore* b) {
   has_cores_ = true;
-  core_a_ = core_of(a);
+  core_a_ = a;
   oriented_a_ = core_a_.kind() != ConvexCore::Kind::point;
   half_a_.setZero();
   half_b_.setZero();
   radius_a_ = core_a_.radius();
   extent_a_ = 1.75 * core_a_.extent();
   reach_ = core_a_.rounding();
-  if (!plane_b_) {
-    core_b_ = core_of(b);
+  if (b != nullptr) {
+    core_b_ = *b;
     oriented_b_ = core_b_.kind() != ConvexCore::Kind::point;
     radius_b_ = core_b_.radius();
     extent_b_ = 1.75 * core_b_.extent();
     reach_ += core_b_.rounding();
   }
   reach_ += error_reach_;
+}
+
+void PairMotion::take_parts(const ConvexCore& a, const ConvexCore& b) {
+  core_a_ = a;
+  core_b_ = b;
+  radius_a_ = a.radius();
+  radius_b_ = b.radius();
+  reach_ = a.rounding() + b.rounding() + error_reach_;
 }
 
 namespace {

@@ -45,9 +45,18 @@ enum class Positions {
             ///< normal
 };
 
+/// A core and how its body moves: of a whole body, or of a part of it.
+struct MovingCore {
+  const ConvexCore& core;
+  const Motion& motion;
+};
+
 /// The two motions of a query, in window time.
 class PairMotion {
  public:
+  PairMotion(const MovingCore& a, const MovingCore& b, const Window& window);
+  /// b is a half-space.
+  PairMotion(const MovingCore& a, const MovingShape& b, const Window& window, Positions positions);
   PairMotion(const MovingShape& a, const MovingShape& b, const Window& window,
              Positions positions = Positions::whole);
 
@@ -74,6 +83,10 @@ class PairMotion {
   /// How far d is from a parabola on [t, t1]: see `TurnBounds::bend`, m/s^2.
   [[nodiscard]] double bend(double t, double t1) const;
 
+  /// Other parts of the same bodies, within the cores that it was made of: `Kinematics` stay what
+  /// they are, and their errors hold for the parts.
+  void take_parts(const ConvexCore& a, const ConvexCore& b);
+
   void evaluate(double t, Kinematics& k) const;
   /// Only what does not depend on orientations: t, d, v, c; the errors are those of the distance of
   /// the origins.
@@ -95,7 +108,11 @@ class PairMotion {
   [[nodiscard]] double time_to_cover(double length, double speed, const Kinematics& k) const;
 
  private:
-  void set_cores(const Shape& a, const Shape& b);
+  PairMotion(const Motion& a, const Motion& b, const Window& window);
+  void set_cores(const ConvexCore& a, const ConvexCore* b);
+  void set_plane(const HalfSpace& half_space);
+  /// What depends on the motions, once shapes or cores are set.
+  void finish(Positions positions);
   void subtract_positions();
   void subtract_heights();
   void add_rotation_errors();

@@ -3,8 +3,9 @@
 #include "ccd/contact_patch.hpp"
 #include "ccd/core_of_shape.hpp"
 #include "ccd/nearest_points.hpp"
+#include "ccd/parts_at_rest.hpp"
 #include "ccd/placed_cores.hpp"
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 
 #include <cmath>
 
@@ -136,6 +137,9 @@ bool shapes_overlap(const Shape& a, const Pose& pose_a, const Shape& b, const Po
   if (shape_rank(a) > shape_rank(b)) {
     return shapes_overlap(b, pose_b, a, pose_a);
   }
+  if (has_parts(a) || has_parts(b)) {
+    return parts_overlap(a, pose_a, b, pose_b);
+  }
   if (is_convex_pair(a, b)) {
     return cores_overlap(a, pose_a, b, pose_b);
   }
@@ -160,6 +164,9 @@ bool shapes_overlap(const Shape& a, const Pose& pose_a, const Shape& b, const Po
 Overlap measure_overlap(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
   if (shape_rank(a) > shape_rank(b)) {
     return turned_round(measure_overlap(b, pose_b, a, pose_a));
+  }
+  if (has_parts(a) || has_parts(b)) {
+    return measure_parts(a, pose_a, b, pose_b);
   }
   if (is_convex_pair(a, b)) {
     return measure_cores(a, pose_a, b, pose_b);

@@ -3,8 +3,8 @@
 #include "ccd/core_of_shape.hpp"
 #include "ccd/core_patch.hpp"
 #include "ccd/core_witness.hpp"
-#include "ccd/rotation_matrix.hpp"
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/rotation_matrix.hpp"
+#include "ccd/rounding/roundoff.hpp"
 
 #include <algorithm>
 

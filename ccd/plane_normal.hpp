@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 #include "core/pose.hpp"
 
 namespace kairos::ccd {

@@ -1,6 +1,6 @@
 #include "ccd/polish.hpp"
 
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 
 #include <algorithm>
 #include <array>
@@ -103,16 +103,11 @@ class Polish {
     pair_.b.nearby(m_b(), none, pin(pair_.R_WB));
   }
 
-  /// Second derivative of the support.
+  /// Second derivative of the support, world axes.
   static Matrix3 curvature(const ConvexCore& core, const Matrix3& R, const Vector3& m) {
-    const bool round =
-        core.kind() == ConvexCore::Kind::cylinder || core.kind() == ConvexCore::Kind::cone;
-    const double across = std::sqrt(m.x() * m.x() + m.z() * m.z());
-    if (!round || !(across > 1e-6)) {
-      return Matrix3::Zero();
-    }
-    const Vector3 tangent = R * Vector3(m.z() / across, 0.0, -m.x() / across);
-    return (core.sizes().x() / across) * (tangent * tangent.transpose());
+    const ConvexCore::Bend bend = core.bend(m);
+    const Vector3 tangent = R * bend.tangent;
+    return bend.radius * (tangent * tangent.transpose());
   }
 
   /// H x = w within the plane across n, if it is known in all directions of it.
@@ -163,10 +158,6 @@ class Polish {
   int pins_ = 0;
 };
 
-bool is_round(const ConvexCore& core) {
-  return core.kind() == ConvexCore::Kind::cylinder || core.kind() == ConvexCore::Kind::cone;
-}
-
 /// How deep 0 is inside a tetrahedron of points that are off by `error`; 0 where that is not
 /// proven.
 double depth_inside(const std::array<Vector3, 4>& x, double error) {
@@ -197,7 +188,7 @@ double depth_inside(const std::array<Vector3, 4>& x, double error) {
 void polish(const CorePair& pair, const Vector3& r, Vector3& n, double& separation) {
   Polish polishing(pair, n, separation);
   polishing.snap(r);
-  if (!is_round(pair.a) && !is_round(pair.b)) {
+  if (!pair.a.is_round() && !pair.b.is_round()) {
     return;
   }
   for (int i = 0; i < most_steps && polishing.step(); ++i) {
@@ -207,7 +198,7 @@ void polish(const CorePair& pair, const Vector3& r, Vector3& n, double& separati
 }
 
 double depth_by_tetrahedron(const CorePair& pair, const Vector3& n, double depth, double error) {
-  if (!is_round(pair.a) && !is_round(pair.b)) {
+  if (!pair.a.is_round() && !pair.b.is_round()) {
     return 0.0;
   }
   int least = 0;

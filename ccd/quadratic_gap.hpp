@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 
 namespace kairos::ccd {
 

@@ -55,6 +55,14 @@ void check_shape(const char* body, const Shape& shape) {
     check_extent(body, cone->height);
   } else if (const auto* hull = std::get_if<Hull>(&shape)) {
     check_hull(body, *hull);
+  } else if (const auto* mesh = std::get_if<Mesh>(&shape)) {
+    if (mesh->body == nullptr) {
+      refuse(body, "the mesh has no triangles; allowed: what solid_body or mesh_in_place makes");
+    }
+  } else if (const auto* compound = std::get_if<Compound>(&shape)) {
+    if (compound->body == nullptr) {
+      refuse(body, "the compound has no parts; allowed: what compound_body makes");
+    }
   } else {
     const double square = std::get<HalfSpace>(shape).normal_B.squaredNorm();
     if (!(std::abs(square - 1.0) <= normal_tolerance)) {

@@ -1,6 +1,6 @@
 #include "ccd/relative_boxes.hpp"
 
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 
 #include <algorithm>
 #include <cmath>

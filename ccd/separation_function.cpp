@@ -1,7 +1,7 @@
 #include "ccd/separation_function.hpp"
 
 #include "ccd/relative_boxes.hpp"
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "ccd/swept_box.hpp"
 
 #include "ccd/relative_boxes.hpp"
-#include "ccd/rotation_matrix.hpp"
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/rotation_matrix.hpp"
+#include "ccd/rounding/roundoff.hpp"
 #include "core/circular.hpp"
 
 #include <algorithm>

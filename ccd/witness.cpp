@@ -3,7 +3,7 @@
 #include "ccd/box_witness.hpp"
 #include "ccd/core_of_shape.hpp"
 #include "ccd/moving_cores.hpp"
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 #include "ccd/spun_box.hpp"
 
 #include <algorithm>

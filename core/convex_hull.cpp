@@ -205,21 +205,15 @@ void add_edges(Polytope& polytope) {
   }
 }
 
-void add_sizes(Polytope& polytope) {
+/// Least and greatest n . x of its vertices.
+double width_along(const Polytope& polytope, const Vector3& n) {
+  double least = n.dot(polytope.vertices[0]);
+  double most = least;
   for (const Vector3& x : polytope.vertices) {
-    polytope.radius = std::max(polytope.radius, x.norm());
-    polytope.extent = std::max(polytope.extent, x.lpNorm<1>());
+    least = std::min(least, n.dot(x));
+    most = std::max(most, n.dot(x));
   }
-  polytope.width = 2.0 * polytope.radius;
-  for (const Vector3& n : polytope.normals) {
-    double least = n.dot(polytope.vertices[0]);
-    double most = least;
-    for (const Vector3& x : polytope.vertices) {
-      least = std::min(least, n.dot(x));
-      most = std::max(most, n.dot(x));
-    }
-    polytope.width = std::min(polytope.width, most - least);
-  }
+  return most - least;
 }
 
 bool is_principal(const Matrix3& inertia) {
@@ -230,7 +224,25 @@ bool is_principal(const Matrix3& inertia) {
 
 }  // namespace
 
-ConvexHull convex_hull(std::span<const Vector3> points) {
+void add_sizes(Polytope& polytope) {
+  for (const Vector3& x : polytope.vertices) {
+    polytope.radius = std::max(polytope.radius, x.norm());
+    polytope.extent = std::max(polytope.extent, x.lpNorm<1>());
+  }
+  polytope.width = 2.0 * polytope.radius;
+  for (const Vector3& n : polytope.normals) {
+    polytope.width = std::min(polytope.width, width_along(polytope, n));
+  }
+  for (int k = 0; k < 3 && polytope.normals.empty(); ++k) {
+    polytope.width = std::min(polytope.width, width_along(polytope, Vector3::Unit(k)));
+  }
+}
+
+namespace {
+
+enum class HullFrame { principal, told };
+
+ConvexHull make_hull(std::span<const Vector3> points, HullFrame frame) {
   if (points.size() < 4) {
     throw std::invalid_argument(
         fmt::format("{} points are no solid: a hull needs four that span a volume", points.size()));
@@ -244,7 +256,7 @@ ConvexHull convex_hull(std::span<const Vector3> points) {
   const MassProperties mass = mass_properties(points, fans(faces));
   const bool principal = is_principal(mass.inertia);
   ConvexHull hull;
-  hull.centre = mass.centre;
+  hull.centre = frame == HullFrame::told ? Vector3(Vector3::Zero()) : mass.centre;
   auto polytope = std::make_shared<Polytope>();
   polytope->volume = mass.volume;
   polytope->axes = principal ? Quaternion(Quaternion::Identity()) : mass.axes;
@@ -268,6 +280,16 @@ ConvexHull convex_hull(std::span<const Vector3> points) {
   add_sizes(*polytope);
   hull.polytope = std::move(polytope);
   return hull;
+}
+
+}  // namespace
+
+ConvexHull convex_hull(std::span<const Vector3> points) {
+  return make_hull(points, HullFrame::principal);
+}
+
+std::shared_ptr<const Polytope> hull_in_place(std::span<const Vector3> points) {
+  return make_hull(points, HullFrame::told).polytope;
 }
 
 }  // namespace core

@@ -3,6 +3,7 @@
 // The room `core`, as a consumer sees it: bodies and scenes, motions, events, and the ports that
 // plug-ins implement. `#include <kairos/core.hpp>`; see core/README.md.
 #include "core/broad_phase.hpp"
+#include "core/compound_body.hpp"
 #include "core/contact_detector.hpp"
 #include "core/drive.hpp"
 #include "core/energy_ledger.hpp"
@@ -16,6 +17,7 @@
 #include "core/impact_law.hpp"
 #include "core/instant.hpp"
 #include "core/mass_properties.hpp"
+#include "core/mesh_body.hpp"
 #include "core/mesh_data.hpp"
 #include "core/mesh_shapes.hpp"
 #include "core/model.hpp"

@@ -53,6 +53,12 @@ struct ConvexHull {
 /// that are principal to roundoff are told as such. Throws `std::invalid_argument` where there is
 /// none with a volume: fewer than four points, a point, a line, a plane; numbers not finite.
 [[nodiscard]] ConvexHull convex_hull(std::span<const Vector3> points);
+/// The same where the points are told: vertices are the points bit for bit, about their origin. The
+/// moments are those about the centroid.
+[[nodiscard]] std::shared_ptr<const Polytope> hull_in_place(std::span<const Vector3> points);
+/// Radius, extent and width from vertices (and normals; without any the width is the least extent
+/// along the axes).
+void add_sizes(Polytope& polytope);
 
 /// On which side of the plane through a, b, c (counterclockwise seen from outside) is d: 1 outside,
 /// -1 inside, 0 exactly on it? Exact, unless differences of coordinates over- or underflow.

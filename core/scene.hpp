@@ -12,13 +12,15 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace kairos {
 inline namespace core {
 
-/// What a body collides as.
-enum class Bounds { shape, obb };
+/// What a body collides as: itself, the box around it, or its convex hull.
+enum class Bounds { shape, obb, hull };
+[[nodiscard]] std::string_view to_string(Bounds bounds);
 /// What the number G of a body is: an acceleration (m/s^2), or the thesis' force (N).
 enum class GravityMode { acceleration, force };
 /// 5.4.1: whether a collision takes the line of centres as its normal.
@@ -45,7 +47,8 @@ struct Body {
   std::string holds;                    ///< name of what its closed fist holds; hands only
   int line = 0;                         ///< where it was written
 
-  /// What it collides as: its shape, or the box around it.
+  /// What it collides as: its shape, the box around it, or its convex hull (of meshes; other shapes
+  /// are themselves). Throws `std::invalid_argument` for a flat mesh, which has none.
   [[nodiscard]] Shape collision_shape() const;
   /// The normal of its reflecting face in the world.
   [[nodiscard]] Vector3 normal(const Pose& pose) const { return pose.orientation * normal_B; }

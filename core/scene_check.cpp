@@ -62,6 +62,12 @@ class BodyCheck {
       need(positive(cone->radius), "radius", "must be > 0 and finite");
       need(positive(cone->height), "height", "must be > 0 and finite");
     }
+    if (const auto* mesh = std::get_if<Mesh>(&body_.shape)) {
+      need(mesh->body != nullptr, "file", "is missing");
+    }
+    if (const auto* compound = std::get_if<Compound>(&body_.shape)) {
+      need(compound->body != nullptr, "part", "is missing");
+    }
     if (const auto* hull = std::get_if<Hull>(&body_.shape)) {
       need(hull->core != nullptr, "points", "are missing");
       need(hull->rounding >= 0.0 && std::isfinite(hull->rounding), "rounding",

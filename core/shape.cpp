@@ -1,7 +1,9 @@
 #include "core/shape.hpp"
 
 #include "core/circular.hpp"
+#include "core/compound_body.hpp"
 #include "core/error.hpp"
+#include "core/mesh_body.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +43,9 @@ std::string_view shape_name(const Shape& shape) {
                           [](const Capsule&) -> std::string_view { return "capsule"; },
                           [](const Cylinder&) -> std::string_view { return "cylinder"; },
                           [](const Cone&) -> std::string_view { return "cone"; },
-                          [](const Hull&) -> std::string_view { return "hull"; }},
+                          [](const Hull&) -> std::string_view { return "hull"; },
+                          [](const Mesh&) -> std::string_view { return "mesh"; },
+                          [](const Compound&) -> std::string_view { return "compound"; }},
                     shape);
 }
 
@@ -55,7 +59,9 @@ double bounding_radius(const Shape& shape) {
             [](const Cone& cone) {
               return std::max(0.75 * cone.height, hypotenuse(cone.radius, 0.25 * cone.height));
             },
-            [](const Hull& hull) { return hull.core->radius + hull.rounding; }},
+            [](const Hull& hull) { return hull.core->radius + hull.rounding; },
+            [](const Mesh& mesh) { return mesh.body->outline.radius; },
+            [](const Compound& compound) { return compound.body->radius; }},
       shape);
 }
 
@@ -70,7 +76,9 @@ double smallest_extent(const Shape& shape) {
               const double side = hypotenuse(cone.radius, cone.height);
               return std::min(cone.height, 2.0 * cone.radius * cone.height / side);
             },
-            [](const Hull& hull) { return hull.core->width + 2.0 * hull.rounding; }},
+            [](const Hull& hull) { return hull.core->width + 2.0 * hull.rounding; },
+            [](const Mesh& mesh) { return mesh.body->outline.width; },
+            [](const Compound& compound) { return compound.body->width; }},
       shape);
 }
 
@@ -98,13 +106,29 @@ Vector3 solid_inertia(const Shape& shape, double mass) {
             },
             [mass](const Hull& hull) -> Vector3 {
               return (mass / hull.core->volume) * hull.core->moments;
+            },
+            [mass](const Mesh& mesh) -> Vector3 {  // a surface encloses nothing
+              return mesh.body->mesh.solid()
+                         ? Vector3((mass / mesh.body->volume) * mesh.body->moments)
+                         : Vector3(Vector3::Zero());
+            },
+            [mass](const Compound& compound) -> Vector3 {
+              return (mass / compound.body->volume) * compound.body->moments;
             }},
       shape);
 }
 
 Quaternion solid_axes(const Shape& shape) {
-  const auto* hull = std::get_if<Hull>(&shape);
-  return hull != nullptr ? hull->core->axes : Quaternion(Quaternion::Identity());
+  if (const auto* hull = std::get_if<Hull>(&shape)) {
+    return hull->core->axes;
+  }
+  if (const auto* mesh = std::get_if<Mesh>(&shape)) {
+    return mesh->body->axes;
+  }
+  if (const auto* compound = std::get_if<Compound>(&shape)) {
+    return compound->body->axes;
+  }
+  return Quaternion::Identity();
 }
 
 Box bounding_box(const Shape& shape) {
@@ -130,7 +154,9 @@ Box bounding_box(const Shape& shape) {
                 half = half.cwiseMax(x.cwiseAbs());
               }
               return Box{half + Vector3::Constant(hull.rounding)};
-            }},
+            },
+            [](const Mesh& mesh) { return Box{mesh.body->half_extents}; },
+            [](const Compound& compound) { return Box{compound.body->half_extents}; }},
       shape);
 }
 

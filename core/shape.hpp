@@ -47,12 +47,23 @@ struct Hull {
   double rounding = 0.0;  ///< m
 };
 
+struct MeshBody;
+/// Triangles: a surface, or the solid that they enclose (see core/mesh_body.hpp).
+struct Mesh {
+  std::shared_ptr<const MeshBody> body;
+};
+struct CompoundBody;
+/// Several convex shapes that move as one (see core/compound_body.hpp).
+struct Compound {
+  std::shared_ptr<const CompoundBody> body;
+};
+
 /// What a body collides as: a closed set, visited once per query, outside every loop.
-using Shape = std::variant<Sphere, Box, HalfSpace, Capsule, Cylinder, Cone, Hull>;
+using Shape = std::variant<Sphere, Box, HalfSpace, Capsule, Cylinder, Cone, Hull, Mesh, Compound>;
 
 /// The order in which a pair is asked for: spheres first, half-spaces last.
 [[nodiscard]] inline int shape_rank(const Shape& shape) {
-  constexpr std::array<int, std::variant_size_v<Shape>> rank{0, 1, 6, 2, 3, 4, 5};
+  constexpr std::array<int, std::variant_size_v<Shape>> rank{0, 1, 8, 2, 3, 4, 5, 6, 7};
   return rank[shape.index()];
 }
 
@@ -64,7 +75,7 @@ using Shape = std::variant<Sphere, Box, HalfSpace, Capsule, Cylinder, Cone, Hull
 /// Principal moments of inertia of the homogeneous solid about its origin, kg m^2; of a
 /// hull without its rounding.
 [[nodiscard]] Vector3 solid_inertia(const Shape& shape, double mass);
-/// The axes of these moments, in body axes: its own but for a hull.
+/// The axes of these moments, in body axes: its own but for a hull, a mesh or a compound.
 [[nodiscard]] Quaternion solid_axes(const Shape& shape);
 /// The box of a shape along the body's axes, about its origin (thesis, 3.3). A half-space has none:
 /// throws.

@@ -1,7 +1,9 @@
 #include "core/solid_size.hpp"
 
 #include "core/circular.hpp"
+#include "core/compound_body.hpp"
 #include "core/exponential.hpp"
+#include "core/mesh_body.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -88,7 +90,9 @@ double solid_volume(const Shape& shape) {
               return r == 0.0 ? hull.core->volume
                               : hull.core->volume + r * area_of_faces(*hull.core) +
                                     r * r * mean_curvature(*hull.core) + 4.0 / 3.0 * pi * r * r * r;
-            }},
+            },
+            [](const Mesh& mesh) { return mesh.body->volume; },
+            [](const Compound& compound) { return compound.body->volume; }},
       shape);
 }
 
@@ -109,6 +113,14 @@ double surface_area(const Shape& shape) {
             const double faces = area_of_faces(*hull.core);
             return r == 0.0 ? faces
                             : faces + 2.0 * r * mean_curvature(*hull.core) + 4.0 * pi * r * r;
+          },
+          [](const Mesh& mesh) { return mesh.body->area; },
+          [](const Compound& compound) {
+            double area = 0.0;
+            for (const CompoundPart& part : compound.body->parts) {
+              area += surface_area(part.shape);
+            }
+            return area;
           }},
       shape);
 }
@@ -129,6 +141,12 @@ Shape resized(const Shape& shape, double size) {
             },
             [size](const Hull& hull) -> Shape {
               return size == 1.0 ? hull : Hull{resized(*hull.core, size), hull.rounding * size};
+            },
+            [size](const Mesh& mesh) -> Shape {
+              return size == 1.0 ? mesh : Mesh{resized(*mesh.body, size)};
+            },
+            [size](const Compound& compound) -> Shape {
+              return size == 1.0 ? compound : Compound{resized(*compound.body, size)};
             }},
       shape);
 }

@@ -1,6 +1,6 @@
 #include "ccd/linear/linear_filter.hpp"
 
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 
 #include <algorithm>
 #include <cmath>

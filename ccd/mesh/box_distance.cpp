@@ -1,6 +1,6 @@
 #include "ccd/mesh/box_distance.hpp"
 
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 
 #include <algorithm>
 #include <array>

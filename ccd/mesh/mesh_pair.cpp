@@ -1,7 +1,7 @@
 #include "ccd/mesh/mesh_pair.hpp"
 
-#include "ccd/rotation_matrix.hpp"
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/rotation_matrix.hpp"
+#include "ccd/rounding/roundoff.hpp"
 #include "core/error.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ccd/linear/exact_integer.hpp"
-#include "ccd/mesh/collision_mesh.hpp"
+#include "core/collision_mesh.hpp"
 
 #include <array>
 #include <cstdint>

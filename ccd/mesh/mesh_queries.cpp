@@ -5,7 +5,7 @@
 #include "ccd/mesh/point_in_solid.hpp"
 #include "ccd/mesh/triangle_contact.hpp"
 #include "ccd/mesh/triangle_distance.hpp"
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ccd/mesh/collision_mesh.hpp"
+#include "core/collision_mesh.hpp"
 
 #include <cstdint>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "ccd/mesh/triangle_contact.hpp"
 
 #include "ccd/mesh/exact_triangles.hpp"
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 
 #include <algorithm>
 #include <cmath>

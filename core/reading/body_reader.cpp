@@ -1,7 +1,9 @@
 #include "core/reading/body_reader.hpp"
 
+#include "core/mesh_body.hpp"
 #include "core/nearest_name.hpp"
 #include "core/reading/drive_reader.hpp"
+#include "core/reading/orientation_reader.hpp"
 #include "core/reading/scene_keys.hpp"
 #include "core/reading/scene_limits.hpp"
 #include "core/reading/scene_name.hpp"
@@ -12,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace kairos {
 inline namespace core {
@@ -38,46 +41,6 @@ std::shared_ptr<const Entity> make_entity(const TableReader& table, const Entity
   return type.make(values);
 }
 
-Quaternion from_components(const Item& item) {
-  const std::vector<double> q = item.numbers(4, limits::component);
-  const Eigen::Vector4d c(q[0], q[1], q[2], q[3]);
-  const double norm = c.stableNorm();
-  if (!(std::abs(norm - 1.0) <= limits::quaternion_norm)) {
-    item.fail(
-        fmt::format("has norm {}; allowed: a unit quaternion [w, x, y, z], norm within {} "
-                    "of 1",
-                    norm, limits::quaternion_norm));
-  }
-  return Quaternion(c[0], c[1], c[2], c[3]).normalized();
-}
-
-Vector3 direction(const Item& item, const Vector3& v) {
-  const double norm = v.stableNorm();
-  if (!(norm > 0.0)) {
-    item.fail("has length 0; allowed: any other direction");
-  }
-  // One that is unit to its roundings stays as it was written.
-  const bool unit = std::abs(v.squaredNorm() - 1.0) <= 4.0 * std::numeric_limits<double>::epsilon();
-  return unit ? v : (v / norm).normalized();
-}
-
-Quaternion read_orientation(const TableReader& table) {
-  const auto components = table.find("orientation");
-  const auto turn = table.find("axis_angle");
-  if (components && turn) {
-    turn->fail("orientation is given too; allowed: one of orientation and axis_angle");
-  }
-  if (components) {
-    return from_components(*components);
-  }
-  if (turn) {
-    const std::vector<double> x = turn->numbers(4, limits::component);
-    const Vector3 axis = direction(*turn, {x[0], x[1], x[2]});
-    return rotate(x[3] * axis, Quaternion::Identity()).normalized();
-  }
-  return Quaternion::Identity();
-}
-
 /// `normal` is told in the world, as it is at the start, and kept in the body. A half-space has no
 /// other shape than its normal.
 void read_normal(const TableReader& table, Body& body) {
@@ -89,7 +52,7 @@ void read_normal(const TableReader& table, Body& body) {
     item->fail(fmt::format("a {} has no reflecting face; only walls and conveyors take a normal",
                            body.entity->kind()));
   }
-  const Vector3 normal = direction(*item, item->vector(limits::component));
+  const Vector3 normal = read_direction(*item, item->vector(limits::component));
   body.normal_B = body.initial.pose.orientation.conjugate() * normal;
   if (auto* half_space = std::get_if<HalfSpace>(&body.shape)) {
     if (table.has("orientation") || table.has("axis_angle")) {
@@ -102,10 +65,18 @@ void read_normal(const TableReader& table, Body& body) {
 Bounds read_bounds(const TableReader& table, const Body& body, Bounds fallback) {
   const auto item = table.find("bounds");
   const Bounds bounds = item ? static_cast<Bounds>(item->choice(bounds_names)) : fallback;
+  if (const auto* mesh = std::get_if<Mesh>(&body.shape);
+      mesh != nullptr && bounds == Bounds::hull) {
+    try {
+      (void)hull_in_place(mesh->body->mesh.vertices());
+    } catch (const std::invalid_argument& error) {
+      table.fail("bounds", error.what());
+    }
+  }
   if (!std::holds_alternative<HalfSpace>(body.shape)) {
     return bounds;
   }
-  if (item && bounds == Bounds::obb) {
+  if (item && bounds != Bounds::shape) {
     item->fail("a half-space has no box around it; allowed: \"shape\"");
   }
   return Bounds::shape;
@@ -119,6 +90,10 @@ void read_inertia(const TableReader& table, Body& body) {
         "inertia",
         "is missing; needed for a hull with rounding: that of the polytope inside is not its "
         "own");
+  }
+  const auto* mesh = std::get_if<Mesh>(&body.shape);
+  if (!item && mesh != nullptr && !mesh->body->mesh.solid()) {
+    table.fail("inertia", "is missing; a surface that moves freely encloses no mass");
   }
   if (!item) {
     body.inertia = solid_inertia(body.shape, body.mass);
@@ -232,7 +207,7 @@ Body read_body(const Item& item, const BodyDefaults& defaults) {
   const EntityType& type = read_entity_type(table);
   refuse_unknown_keys(table, type);
   body.entity = make_entity(table, type);
-  body.shape = read_shape(table, defaults.directory);
+  body.shape = read_shape(table, defaults.directory, type.mobility == Mobility::free);
   body.bounds = read_bounds(table, body, defaults.bounds);
   if (const auto position = table.find("position")) {
     body.initial.pose.position = position->vector(limits::position);

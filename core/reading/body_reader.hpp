@@ -16,7 +16,7 @@ struct BodyDefaults {
   std::string directory;  ///< of the scene file: tracks are relative to it
 };
 
-inline constexpr std::string_view bounds_names[] = {"shape", "obb"};
+inline constexpr std::string_view bounds_names[] = {"shape", "obb", "hull"};
 
 /// Coulomb's coefficient: a number >= 0, or infinite. Throws `InputError`.
 [[nodiscard]] double read_friction(const Item& item);

@@ -1,7 +1,9 @@
 #include "core/reading/shape_reader.hpp"
 
 #include "core/error.hpp"
+#include "core/mesh_body.hpp"
 #include "core/reading/mesh_file.hpp"
+#include "core/reading/parts_reader.hpp"
 #include "core/reading/scene_limits.hpp"
 
 #include <fmt/format.h>
@@ -28,9 +30,13 @@ constexpr ShapeKind kinds[] = {
     {"cylinder", {"radius", "length"}},
     {"cone", {"radius", "height"}},
     {"hull", {"points", "file", "unit", "rounding"}},
+    {"mesh", {"file", "unit", "solid"}},
+    {"compound", {"part"}},
+    {"height-field", {"heights", "spacing"}},
 };
-constexpr std::string_view size_keys[] = {"radius", "half_extents", "length", "height",
-                                          "points", "file",         "unit",   "rounding"};
+constexpr std::string_view size_keys[] = {"radius", "half_extents", "length",  "height",
+                                          "points", "file",         "unit",    "rounding",
+                                          "solid",  "part",         "heights", "spacing"};
 /// Points of a hull that are written in the scene.
 constexpr std::size_t most_points = 100'000;
 constexpr Range unit_range{.lowest = 0.0, .highest = 1e6, .above = true, .unit = "m"};
@@ -71,11 +77,10 @@ std::vector<Vector3> written_points(const Item& item) {
   return points;
 }
 
-std::vector<Vector3> points_of_file(const Item& item, const TableReader& table,
-                                    const std::string& directory) {
+MeshData mesh_of_file(const Item& item, const TableReader& table, const std::string& directory) {
   const auto unit = table.find("unit");
   const std::filesystem::path path = std::filesystem::path(directory) / item.text();
-  return read_mesh(path.string(), unit ? unit->number(unit_range) : 1.0).mesh.vertices;
+  return read_mesh(path.string(), unit ? unit->number(unit_range) : 1.0).mesh;
 }
 
 Shape read_hull(const TableReader& table, const std::string& directory) {
@@ -92,8 +97,8 @@ Shape read_hull(const TableReader& table, const std::string& directory) {
   const auto rounding = table.find("rounding");
   const Item& source = points ? *points : *file;
   try {
-    ConvexHull hull =
-        convex_hull(points ? written_points(*points) : points_of_file(*file, table, directory));
+    ConvexHull hull = convex_hull(points ? written_points(*points)
+                                         : mesh_of_file(*file, table, directory).vertices);
     if (!limits::extent.contains(hull.polytope->width)) {
       source.fail(fmt::format("the hull is {} m thin; allowed: {}", hull.polytope->width,
                               limits::extent.text()));
@@ -104,9 +109,30 @@ Shape read_hull(const TableReader& table, const std::string& directory) {
   }
 }
 
+/// A body that moves freely is a solid, unless it is told how it turns.
+Shape read_mesh_shape(const TableReader& table, const std::string& directory, bool moves_freely) {
+  const Item file = table.need("file", "path of an .off, .obj or .stl");
+  const auto told = table.find("solid");
+  const bool solid = told ? told->flag() : moves_freely && !table.has("inertia");
+  MeshData data = mesh_of_file(file, table, directory);
+  try {
+    if (solid && moves_freely) {
+      return Mesh{solid_body(std::move(data)).body};
+    }
+    using Kind = CollisionMesh::Kind;
+    return Mesh{mesh_in_place(std::move(data), solid ? Kind::solid : Kind::surface)};
+  } catch (const InputError& error) {
+    if (!solid) {
+      file.fail(error.reason());
+    }
+    file.fail(fmt::format("is no solid: it {}; allowed: a closed mesh, or solid = false{}",
+                          error.reason(), moves_freely ? " and inertia" : ""));
+  }
+}
+
 }  // namespace
 
-Shape read_shape(const TableReader& table, const std::string& directory) {
+Shape read_shape(const TableReader& table, const std::string& directory, bool moves_freely) {
   const ShapeKind& kind = shape_kind(table);
   for (const std::string_view key : size_keys) {
     if (table.has(key) &&
@@ -129,7 +155,16 @@ Shape read_shape(const TableReader& table, const std::string& directory) {
   if (kind.name == "cone") {
     return Cone{extent(table, "radius"), extent(table, "height")};
   }
-  return kind.name == "hull" ? read_hull(table, directory) : Shape{HalfSpace{}};
+  if (kind.name == "hull") {
+    return read_hull(table, directory);
+  }
+  if (kind.name == "mesh") {
+    return read_mesh_shape(table, directory, moves_freely);
+  }
+  if (kind.name == "compound") {
+    return read_compound(table, directory, moves_freely);
+  }
+  return kind.name == "height-field" ? read_height_field(table) : Shape{HalfSpace{}};
 }
 
 }  // namespace core

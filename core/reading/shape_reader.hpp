@@ -6,8 +6,10 @@
 namespace kairos {
 inline namespace core {
 
-/// Reads `shape` and the keys of its size; `directory`: of relative files.
-[[nodiscard]] Shape read_shape(const TableReader& table, const std::string& directory);
+/// Reads `shape` and the keys of its size; `directory`: of relative files. What moves freely turns
+/// about its centre of mass: its mesh is put there. Others keep the origin of the file.
+[[nodiscard]] Shape read_shape(const TableReader& table, const std::string& directory,
+                               bool moves_freely);
 
 }  // namespace core
 }  // namespace kairos

@@ -15,11 +15,11 @@
 namespace kairos::experiments {
 namespace {
 
-using ccd::CollisionMesh;
+
 using ccd::MeshCost;
 using ccd::MeshQueries;
 using ccd::MeshVerdict;
-using ccd::PosedMesh;
+
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t seed = 20261122;

@@ -16,15 +16,15 @@ constexpr std::string_view needed =
 
 }  // namespace
 
-std::shared_ptr<const ccd::CollisionMesh> MeshLibrary::find(const std::string& path) {
+std::shared_ptr<const CollisionMesh> MeshLibrary::find(const std::string& path) {
   const std::lock_guard lock(mutex_);
   const auto known = meshes_.find(path);
   if (known != meshes_.end()) {
     return known->second;
   }
-  using Kind = ccd::CollisionMesh::Kind;
+  using Kind = CollisionMesh::Kind;
   try {
-    auto mesh = std::make_shared<const ccd::CollisionMesh>(
+    auto mesh = std::make_shared<const CollisionMesh>(
         read_mesh(path, options_.scale).mesh, options_.solid ? Kind::solid : Kind::surface);
     meshes_.emplace(path, mesh);
     return mesh;
@@ -58,7 +58,7 @@ MeshQueryFormat::Body MeshQueryFormat::find_body(const std::string& prefix,
   return body;
 }
 
-std::shared_ptr<const ccd::CollisionMesh> MeshQueryFormat::mesh(
+std::shared_ptr<const CollisionMesh> MeshQueryFormat::mesh(
     const Body& body, const std::vector<std::string_view>& fields) const {
   const std::string_view path =
       body.mesh == CsvColumns::absent ? std::string_view() : unquoted(fields[body.mesh]);

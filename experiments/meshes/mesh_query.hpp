@@ -25,19 +25,19 @@ class MeshLibrary {
  public:
   explicit MeshLibrary(MeshOptions options) : options_(std::move(options)) {}
   /// Throws `InputError`.
-  [[nodiscard]] std::shared_ptr<const ccd::CollisionMesh> find(const std::string& path);
+  [[nodiscard]] std::shared_ptr<const CollisionMesh> find(const std::string& path);
   [[nodiscard]] const MeshOptions& options() const { return options_; }
 
  private:
   MeshOptions options_;
   std::mutex mutex_;
-  std::map<std::string, std::shared_ptr<const ccd::CollisionMesh>, std::less<>> meshes_;
+  std::map<std::string, std::shared_ptr<const CollisionMesh>, std::less<>> meshes_;
 };
 
 /// One row: two meshes and where they are.
 struct MeshRow {
   std::string_view id;  ///< as written, quotes included: a view of the row
-  std::shared_ptr<const ccd::CollisionMesh> mesh_a, mesh_b;
+  std::shared_ptr<const CollisionMesh> mesh_a, mesh_b;
   Pose pose_a, pose_b;
 };
 
@@ -62,10 +62,10 @@ class MeshQueryFormat {
   struct Body {
     std::array<std::size_t, 7> numbers{};
     std::size_t mesh = CsvColumns::absent;
-    std::shared_ptr<const ccd::CollisionMesh> always;  ///< where the rows name none
+    std::shared_ptr<const CollisionMesh> always;  ///< where the rows name none
   };
   [[nodiscard]] Body find_body(const std::string& prefix, const std::string& path) const;
-  [[nodiscard]] std::shared_ptr<const ccd::CollisionMesh> mesh(
+  [[nodiscard]] std::shared_ptr<const CollisionMesh> mesh(
       const Body& body, const std::vector<std::string_view>& fields) const;
   [[nodiscard]] Pose pose(const Body& body, const std::vector<std::string_view>& fields) const;
 

@@ -11,7 +11,7 @@ namespace kairos::experiments {
 namespace {
 
 using ccd::MeshVerdict;
-using ccd::PosedMesh;
+
 
 constexpr std::array verdict_names{"apart", "touching", "a inside", "b inside"};
 constexpr std::array within_names{"yes", "no", "undecided"};

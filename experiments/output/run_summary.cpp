@@ -1,5 +1,6 @@
 #include "experiments/output/run_summary.hpp"
 
+#include "core/mesh_body.hpp"
 #include "core/reading/csv.hpp"
 #include "simulation/option.hpp"
 #include "simulation/output/json_writer.hpp"
@@ -16,8 +17,6 @@
 
 namespace kairos::experiments {
 namespace {
-
-std::string_view bounds_name(Bounds bounds) { return bounds == Bounds::obb ? "obb" : "shape"; }
 
 std::string_view gravity_name(GravityMode mode) {
   return mode == GravityMode::force ? "force" : "acceleration";
@@ -48,16 +47,28 @@ void add_scene(JsonWriter& json, const Scene& scene) {
   json.text("gravity", gravity_name(scene.gravity));
   json.open("bounds");
   for (const Body& body : scene.bodies) {
-    json.text(body.name, bounds_name(body.bounds));
+    json.text(body.name, to_string(body.bounds));
   }
   json.close();
   json.close();
 }
 
-/// The vertices of a polytope, "x y z; x y z; ...", body axes.
-std::string written(const Polytope& polytope) {
+/// Meshes with more triangles are drawn as the box around them.
+constexpr std::size_t most_drawn = 20'000;
+
+/// Corners of triangles, "0 1 2; 0 2 3; ...".
+std::string written(const std::vector<Triangle>& triangles) {
   std::string text;
-  for (const Vector3& x : polytope.vertices) {
+  for (const Triangle& t : triangles) {
+    text += fmt::format("{}{} {} {}", text.empty() ? "" : "; ", t[0], t[1], t[2]);
+  }
+  return text;
+}
+
+/// Vertices, "x y z; x y z; ...", body axes.
+std::string written(const std::vector<Vector3>& vertices) {
+  std::string text;
+  for (const Vector3& x : vertices) {
     text += fmt::format("{}{} {} {}", text.empty() ? "" : "; ", x.x(), x.y(), x.z());
   }
   return text;
@@ -84,9 +95,14 @@ void add_bodies(JsonWriter& json, const Model& model) {
     }
     if (const auto* hull = std::get_if<Hull>(&body.shape)) {
       json.number("rounding", hull->rounding);
-      json.text("vertices", written(*hull->core));
+      json.text("vertices", written(hull->core->vertices));
     }
-    json.text("bounds", bounds_name(body.bounds));
+    const auto* mesh = std::get_if<Mesh>(&body.shape);
+    if (mesh != nullptr && mesh->body->mesh.triangles().size() <= most_drawn) {
+      json.text("vertices", written(mesh->body->mesh.vertices()));
+      json.text("triangles", written(mesh->body->mesh.triangles()));
+    }
+    json.text("bounds", to_string(body.bounds));
     json.text("moves", movers[static_cast<std::size_t>(model.mobility(i))]);
     json.flag("field", model.is_field(i));
     json.close();

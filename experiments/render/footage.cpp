@@ -1,6 +1,7 @@
 #include "experiments/render/footage.hpp"
 
 #include "core/error.hpp"
+#include "core/mesh_body.hpp"
 #include "core/reading/csv.hpp"
 #include "core/reading/document.hpp"
 #include "core/reading/point_list.hpp"
@@ -119,22 +120,44 @@ class Summary {
     return {normal};
   }
 
-  [[nodiscard]] Hull hull(const Fields& body) const {
-    const auto points = read_point_list(field(body, "vertices"), [&](std::string_view word) {
+  /// Three numbers each, of the vertices or triangles of a body.
+  [[nodiscard]] std::vector<Vector3> triples(const Fields& body, const std::string& key) const {
+    const auto found = read_point_list(field(body, key), [&](std::string_view word) {
       const auto x = parse_number(word);
       if (!x) {
-        fail(body, "vertices", fmt::format("holds {}; allowed: numbers", word));
+        fail(body, key, fmt::format("holds {}; allowed: numbers", word));
       }
       return *x;
     });
-    if (!points) {
-      fail(body, "vertices", "holds no whole number of points; allowed: three numbers each");
+    if (!found) {
+      fail(body, key, "holds no whole number of rows; allowed: three numbers each");
     }
+    return *found;
+  }
+
+  [[nodiscard]] Hull hull(const Fields& body) const {
+    const std::vector<Vector3> points = triples(body, "vertices");
     const auto rounding = parse_number(field(body, "rounding"));
     try {
-      return {convex_hull(*points).polytope, rounding.value_or(0.0)};
+      return {convex_hull(points).polytope, rounding.value_or(0.0)};
     } catch (const std::exception& error) {
       fail(body, "vertices", error.what());
+    }
+  }
+
+  [[nodiscard]] Mesh mesh(const Fields& body) const {
+    MeshData data{triples(body, "vertices"), {}};
+    for (const Vector3& t : triples(body, "triangles")) {
+      if (!((t.array() >= 0.0).all() && (t.array() < 4e9).all())) {
+        fail(body, "triangles", "holds a corner that is none");
+      }
+      data.triangles.push_back({static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
+                                static_cast<std::uint32_t>(t[2])});
+    }
+    try {
+      return {mesh_in_place(std::move(data), CollisionMesh::Kind::surface)};
+    } catch (const std::exception& error) {
+      fail(body, "triangles", error.what());
     }
   }
 
@@ -145,7 +168,9 @@ class Summary {
     const std::string& shape = field(body, "shape");
     if (shape == "sphere") {
       actor.shape = Sphere{extent(body, "hx")};
-    } else if (shape == "box") {
+    } else if (shape == "mesh" && body.values.contains("triangles")) {
+      actor.shape = mesh(body);
+    } else if (shape == "box" || shape == "mesh" || shape == "compound") {  // as their box
       actor.shape = Box{{extent(body, "hx"), extent(body, "hy"), extent(body, "hz")}};
     } else if (shape == "half-space") {
       actor.shape = half_space(body);
@@ -159,9 +184,11 @@ class Summary {
     } else if (shape == "hull") {
       actor.shape = hull(body);
     } else {
-      fail(body, "shape",
-           fmt::format("is \"{}\"; allowed: sphere, box, half-space, capsule, cylinder, cone, hull",
-                       shape));
+      fail(
+          body, "shape",
+          fmt::format("is \"{}\"; allowed: sphere, box, half-space, capsule, cylinder, cone, hull, "
+                      "mesh, compound",
+                      shape));
     }
     const bool as_box = field(body, "bounds") == "obb" && shape != "half-space";
     actor.collides_as = as_box ? Shape(bounding_box(actor.shape)) : actor.shape;

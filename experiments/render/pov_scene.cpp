@@ -1,6 +1,7 @@
 #include "experiments/render/pov_scene.hpp"
 
 #include "core/error.hpp"
+#include "core/mesh_body.hpp"
 #include "core/reading/csv.hpp"
 #include "simulation/registry.hpp"
 
@@ -81,6 +82,19 @@ std::string planes(const Hull& hull) {
   return text;
 }
 
+/// Triangles; what they enclose is inside.
+std::string triangles(const CollisionMesh& mesh) {
+  std::string text = fmt::format("mesh2 {{ vertex_vectors {{ {}", mesh.vertices().size());
+  for (const Vector3& x : mesh.vertices()) {
+    text += ", " + vec(x);
+  }
+  text += fmt::format(" }} face_indices {{ {}", mesh.triangles().size());
+  for (const Triangle& t : mesh.triangles()) {
+    text += fmt::format(", <{},{},{}>", t[0], t[1], t[2]);
+  }
+  return text + " } inside_vector <0.31, 0.83, 0.46> ";
+}
+
 /// Geometry alone, in body axes, so that it can be cut with another.
 std::string solid(const Shape& shape) {
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
@@ -108,6 +122,12 @@ std::string solid(const Shape& shape) {
   }
   if (const auto* hull = std::get_if<Hull>(&shape)) {
     return planes(*hull);
+  }
+  if (const auto* mesh = std::get_if<Mesh>(&shape)) {
+    return triangles(mesh->body->mesh);
+  }
+  if (const auto* compound = std::get_if<Compound>(&shape)) {
+    return solid(bounding_box(*compound));
   }
   return "plane { y, 0 ";
 }

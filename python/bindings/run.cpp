@@ -125,7 +125,7 @@ py::list body_rows(const RunRecord& record) {
     row["shape"] = shape_name(body.shape);
     row["moves"] = movers[static_cast<std::size_t>(model.mobility(i))];
     row["field"] = model.is_field(i);
-    row["bounds"] = body.bounds == Bounds::obb ? "obb" : "shape";
+    row["bounds"] = to_string(body.bounds);
     row["mass"] = body.mass;
     const bool flat = std::holds_alternative<HalfSpace>(body.shape);
     const Vector3 v =

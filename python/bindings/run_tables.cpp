@@ -189,7 +189,7 @@ py::dict summary_of(const RunRecord& run) {
   dict["gravity"] = scene.gravity == GravityMode::force ? "force" : "acceleration";
   py::dict bounds;
   for (const Body& body : scene.bodies) {
-    bounds[py::str(body.name)] = body.bounds == Bounds::obb ? "obb" : "shape";
+    bounds[py::str(body.name)] = to_string(body.bounds);
   }
   dict["bounds"] = bounds;
   dict["method"] = method_of(run);

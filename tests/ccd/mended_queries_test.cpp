@@ -1,6 +1,6 @@
 // Queries that `certified` once answered wrongly, each file a class: the rows are samples of it,
 // and "properties of hard queries" draws others.
-#include "ccd/roundoff.hpp"
+#include "ccd/rounding/roundoff.hpp"
 #include "ccd/swept_box.hpp"
 #include "tests/ccd/cases.hpp"
 #include "tests/ccd/query_rows.hpp"

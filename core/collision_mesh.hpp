@@ -1,11 +1,12 @@
 #pragma once
 
-#include "ccd/mesh/obb_tree.hpp"
 #include "core/mesh_data.hpp"
+#include "core/obb_tree.hpp"
 
 #include <vector>
 
-namespace kairos::ccd {
+namespace kairos {
+inline namespace core {
 
 /// A mesh that queries are asked of: its triangles and their tree. Const after construction; shared
 /// by threads. Vertices 24, triangles 12, tree 40 bytes each: 64 bytes a triangle of a closed mesh.
@@ -41,4 +42,5 @@ struct PosedMesh {
   const Pose& pose;
 };
 
-}  // namespace kairos::ccd
+}  // namespace core
+}  // namespace kairos

@@ -1,11 +1,12 @@
-#include "ccd/mesh/collision_mesh.hpp"
+#include "core/collision_mesh.hpp"
 
 #include "core/mass_properties.hpp"
 
 #include <numeric>
 #include <utility>
 
-namespace kairos::ccd {
+namespace kairos {
+inline namespace core {
 namespace {
 
 /// A vertex of each set of triangles that hang together by vertices.
@@ -52,4 +53,5 @@ std::size_t CollisionMesh::memory() const {
          data_.triangles.capacity() * sizeof(Triangle) + tree_.nodes.capacity() * sizeof(ObbNode);
 }
 
-}  // namespace kairos::ccd
+}  // namespace core
+}  // namespace kairos

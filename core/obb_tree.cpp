@@ -1,6 +1,5 @@
-#include "ccd/mesh/obb_tree.hpp"
+#include "core/obb_tree.hpp"
 
-#include "ccd/roundoff.hpp"
 #include "core/error.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -8,12 +7,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <span>
 
-namespace kairos::ccd {
+namespace kairos {
+inline namespace core {
 namespace {
 
+constexpr double unit_roundoff = 0.5 * std::numeric_limits<double>::epsilon();
+constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double largest_coordinate = 1e12;
 
 float rounded_up(double x) {
@@ -224,4 +227,5 @@ ObbTree build_obb_tree(const MeshData& mesh) {
   return Builder(mesh).build();
 }
 
-}  // namespace kairos::ccd
+}  // namespace core
+}  // namespace kairos

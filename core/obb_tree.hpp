@@ -6,7 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-namespace kairos::ccd {
+namespace kairos {
+inline namespace core {
 
 /// A node of an `ObbTree`, or one of its triangles.
 class ObbChild {
@@ -62,4 +63,5 @@ struct ObbTree {
 /// that do not exist, or numbers beyond 1e12.
 [[nodiscard]] ObbTree build_obb_tree(const MeshData& mesh);
 
-}  // namespace kairos::ccd
+}  // namespace core
+}  // namespace kairos
