@@ -19,6 +19,7 @@
 #include "core/mass_properties.hpp"
 #include "core/mesh_body.hpp"
 #include "core/mesh_data.hpp"
+#include "core/mesh_defects.hpp"
 #include "core/mesh_shapes.hpp"
 #include "core/model.hpp"
 #include "core/motion.hpp"

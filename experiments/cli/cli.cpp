@@ -63,6 +63,7 @@ void add_commands(CLI::App& app) {
   add_list_command(app);
   add_toi_command(app);
   add_vfee_command(app);
+  add_mesh_command(app);
   add_collide_command(app);
   add_distance_command(app);
   add_sweep_command(app);

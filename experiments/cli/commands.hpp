@@ -15,6 +15,7 @@ void add_list_command(CLI::App& app);
 void add_toi_command(CLI::App& app);
 void add_vfee_command(CLI::App& app);
 void add_collide_command(CLI::App& app);
+void add_mesh_command(CLI::App& app);
 void add_distance_command(CLI::App& app);
 void add_sweep_command(CLI::App& app);
 void add_experiment_command(CLI::App& app);
