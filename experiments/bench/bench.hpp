@@ -42,5 +42,8 @@ void bench_gas(std::vector<std::size_t> counts, int rounds);
 /// Meshes at rest: two tori in many placements, touching, distance, tolerance; a tree's time and
 /// size.
 void bench_meshes(int rounds);
+/// Rallies of `table-tennis` with a bat that collides as its box, its hull or its triangles: what
+/// each hits, lets pass and costs. Prints a table.
+void bench_bats(int rallies);
 
 }  // namespace kairos::experiments

@@ -15,7 +15,6 @@
 namespace kairos::experiments {
 namespace {
 
-
 using ccd::MeshCost;
 using ccd::MeshQueries;
 using ccd::MeshVerdict;

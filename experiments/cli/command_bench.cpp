@@ -18,6 +18,7 @@ namespace {
 struct BenchCommand {
   std::string name;
   int rounds = 3;
+  int rallies = 200;
   std::size_t pairs = std::size_t{1} << 18;  // more than a branch predictor learns
   std::vector<std::size_t> balls{64, 512, 4096};
   AccuracyOptions accuracy;
@@ -42,6 +43,10 @@ struct BenchCommand {
       bench_meshes(rounds);
       return;
     }
+    if (name == "bats") {
+      bench_bats(rallies);
+      return;
+    }
     if (name != "ccd") {
       bench_stepping(rounds);
     }
@@ -58,16 +63,20 @@ void add_bench_command(CLI::App& app) {
   CLI::App* bench = app.add_subcommand(
       "bench", "Time it: ratios within one run, interleaved, the least of several rounds");
   bench
-      ->add_option("name", options->name,
-                   "bounce, ccd, vfee, meshes or gas: times; without it the first two; accuracy: "
-                   "answers against a "
-                   "reference")
-      ->check(CLI::IsMember({"bounce", "ccd", "vfee", "meshes", "gas", "accuracy"}));
+      ->add_option(
+          "name", options->name,
+          "bounce, ccd, vfee, meshes, bats or gas: times; without it the first two; accuracy: "
+          "answers against a "
+          "reference")
+      ->check(CLI::IsMember({"bounce", "ccd", "vfee", "meshes", "bats", "gas", "accuracy"}));
   bench->add_option("--rounds", options->rounds, "how often each is timed")
       ->check(whole_number(1, 1000))
       ->capture_default_str();
   bench->add_option("--pairs", options->pairs, "ccd, vfee: how many distinct pairs")
       ->check(whole_number(1, 1 << 22))
+      ->capture_default_str();
+  bench->add_option("--rallies", options->rallies, "bats: how many")
+      ->check(whole_number(1, 100'000))
       ->capture_default_str();
   bench->add_option("--balls", options->balls, "gas: how many, one gas for each number")
       ->check(whole_number(2, 10'000'000))

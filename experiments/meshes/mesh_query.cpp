@@ -24,8 +24,8 @@ std::shared_ptr<const CollisionMesh> MeshLibrary::find(const std::string& path) 
   }
   using Kind = CollisionMesh::Kind;
   try {
-    auto mesh = std::make_shared<const CollisionMesh>(
-        read_mesh(path, options_.scale).mesh, options_.solid ? Kind::solid : Kind::surface);
+    auto mesh = std::make_shared<const CollisionMesh>(read_mesh(path, options_.scale).mesh,
+                                                      options_.solid ? Kind::solid : Kind::surface);
     meshes_.emplace(path, mesh);
     return mesh;
   } catch (const InputError& error) {

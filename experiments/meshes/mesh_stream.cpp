@@ -12,7 +12,6 @@ namespace {
 
 using ccd::MeshVerdict;
 
-
 constexpr std::array verdict_names{"apart", "touching", "a inside", "b inside"};
 constexpr std::array within_names{"yes", "no", "undecided"};
 
