@@ -27,12 +27,17 @@ def draw(data, figures):
 def draw_sweep(data, figures, sweep):
     rows = data.table(sweep, "runs")
     methods = unique(row["method"] for row in rows)
+    # Where a run stopped nothing is known of its end.
+    rows = [row for row in rows if row["status"] == "completed"]
     x = data.axes(sweep)[0]
     told = PANELS[sweep]
     figure, panels = plt.subplots(1, len(told), figsize=(1.0 + 3.6 * len(told), 3.8))
     for panel, (metric, label, title) in zip(panels, told):
         for place, method in enumerate(methods):
-            at, value = points(pick(rows, method=method), x, metric)
+            done = pick(rows, method=method)
+            if not done:
+                continue
+            at, value = points(done, x, metric)
             if metric not in LINEAR:
                 value = [max(abs(v), LEAST) for v in value]
             panel.plot(at, value, **style.by_place(place, method))
