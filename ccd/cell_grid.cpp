@@ -50,30 +50,52 @@ CellLayout::CellLayout(const Model& model, double tolerance) {
   slack = 1e-3 * radius + 4.0 * tolerance;
   margin = radius / 16.0;
   const double least = 2.0 * (radius + slack + margin);
-  const Vector3 size = (high - low).cwiseMax(least);
-  width = std::max(least, cube_root(size.prod() * bodies_to_a_cell / n));
-  per_width = 1.0 / width;
+  Vector3 size = (high - low).cwiseMax(least);
+  const Vector3 period =
+      model.scene().periodic ? model.scene().periodic->period() : Vector3(Vector3::Zero());
+  for (int k = 0; k < 3; ++k) {
+    size[k] = period[k] > 0.0 ? period[k] : size[k];
+  }
+  const double usual = std::max(least, cube_root(size.prod() * bodies_to_a_cell / n));
+  width.setConstant(usual);
   farthest = 0x1p36 * margin;
   // Not more cells than bodies call for: along the longest axis they then coincide.
   double all = 1.0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double needed = size[static_cast<Eigen::Index>(k)] * per_width + 3.0;
-    counts[k] = static_cast<std::int64_t>(
-        std::bit_ceil(static_cast<std::uint64_t>(std::clamp(needed, 4.0, 0x1p20))));
+    const auto axis = static_cast<Eigen::Index>(k);
+    if (period[axis] > 0.0) {
+      const double along = std::floor(period[axis] / usual);
+      fits = fits && along >= 4.0;
+      counts[k] = static_cast<std::int64_t>(std::clamp(along, 1.0, 0x1p20));
+      width[axis] = period[axis] / static_cast<double>(counts[k]);
+    } else {
+      const double needed = size[axis] / usual + 3.0;
+      counts[k] = static_cast<std::int64_t>(
+          std::bit_ceil(static_cast<std::uint64_t>(std::clamp(needed, 4.0, 0x1p20))));
+    }
     all *= static_cast<double>(counts[k]);
   }
+  per_width = width.cwiseInverse();
   while (all > 16.0 * n + 64.0) {
-    std::int64_t& longest = *std::max_element(counts.begin(), counts.end());
-    longest /= 2;
+    std::size_t longest = 3;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const bool open = period[static_cast<Eigen::Index>(k)] == 0.0;
+      longest = open && (longest == 3 || counts[k] > counts[longest]) ? k : longest;
+    }
+    if (longest == 3) {
+      break;  // periods have as many cells as bodies call for
+    }
+    counts[longest] /= 2;
     all /= 2.0;
   }
 }
 
 CellGrid::CellGrid(const std::array<std::int64_t, 3>& counts)
-    : mask_{counts[0] - 1, counts[1] - 1, counts[2] - 1},
-      shift_{std::countr_zero(static_cast<std::uint64_t>(counts[0])),
-             std::countr_zero(static_cast<std::uint64_t>(counts[1]))},
-      cells_(static_cast<std::size_t>(counts[0] * counts[1] * counts[2])) {}
+    : count_(counts), cells_(static_cast<std::size_t>(counts[0] * counts[1] * counts[2])) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    mask_[k] = std::has_single_bit(static_cast<std::uint64_t>(count_[k])) ? count_[k] - 1 : 0;
+  }
+}
 
 void CellGrid::insert(const CellIndex& cell, BodyIndex i) {
   Cell* at = &cells_[place(cell[0], cell[1], cell[2])];
@@ -152,11 +174,17 @@ void CellGrid::around(const CellIndex& cell, BodyIndex i, std::vector<BodyIndex>
 /// Bodies in the cells at most so many along each axis from a cell.
 void CellGrid::block(const CellIndex& cell, const CellIndex& wide, BodyIndex i,
                      std::vector<BodyIndex>& out) const {
-  for (std::int64_t z = cell[2] - wide[2]; z <= cell[2] + wide[2]; ++z) {
-    for (std::int64_t y = cell[1] - wide[1]; y <= cell[1] + wide[1]; ++y) {
-      const std::size_t row = place(0, y, z);
-      for (std::int64_t x = cell[0] - wide[0]; x <= cell[0] + wide[0]; ++x) {
-        append(row | static_cast<std::size_t>(x & mask_[0]), i, out);
+  CellIndex first{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    first[k] = turned(cell[k] - wide[k], k);
+  }
+  std::int64_t z = first[2];
+  for (std::int64_t dz = -wide[2]; dz <= wide[2]; ++dz, z = next(z, 2)) {
+    std::int64_t y = first[1];
+    for (std::int64_t dy = -wide[1]; dy <= wide[1]; ++dy, y = next(y, 1)) {
+      std::int64_t x = first[0];
+      for (std::int64_t dx = -wide[0]; dx <= wide[0]; ++dx, x = next(x, 0)) {
+        append(at(x, y, z), i, out);
       }
     }
   }

@@ -20,10 +20,12 @@ struct CellLayout {
   double margin = 0.0;  ///< how far a body goes beyond its cell before it crosses, m
   /// Of a cell: two bodies that touch are at most radii and slacks apart, and two that are not in
   /// neighbouring cells at least the width less two margins.
-  double width = 1.0;
-  double per_width = 1.0;                       ///< its inverse
-  double farthest = 0.0;                        ///< coordinates beyond this resolve no margin, m
-  std::array<std::int64_t, 3> counts{4, 4, 4};  ///< of cells along each axis: powers of two
+  Vector3 width = Vector3::Ones();
+  Vector3 per_width = Vector3::Ones();  ///< its inverse
+  double farthest = 0.0;                ///< coordinates beyond this resolve no margin, m
+  /// Of cells along each axis: a power of two, or as many as divide a period.
+  std::array<std::int64_t, 3> counts{4, 4, 4};
+  bool fits = true;  ///< whether periods have room for at least four cells each
 };
 
 /// Bodies by cell, on a torus: cells a whole number of turns apart are one.
@@ -31,7 +33,7 @@ class CellGrid {
  public:
   explicit CellGrid(const std::array<std::int64_t, 3>& counts);
 
-  [[nodiscard]] std::int64_t count(std::size_t axis) const { return mask_[axis] + 1; }
+  [[nodiscard]] std::int64_t count(std::size_t axis) const { return count_[axis]; }
 
   void insert(const CellIndex& cell, BodyIndex i);
   void remove(const CellIndex& cell, BodyIndex i);
@@ -55,17 +57,31 @@ class CellGrid {
     std::array<Id, room> bodies{};
   };
 
+  /// Where cell c is along an axis of the torus.
+  [[nodiscard]] std::int64_t turned(std::int64_t c, std::size_t axis) const {
+    if (mask_[axis] != 0) {
+      return c & mask_[axis];
+    }
+    const std::int64_t rest = c % count_[axis];
+    return rest < 0 ? rest + count_[axis] : rest;
+  }
+  /// The cell after that, along an axis of the torus.
+  [[nodiscard]] std::int64_t next(std::int64_t turned, std::size_t axis) const {
+    return turned + 1 == count_[axis] ? 0 : turned + 1;
+  }
+  [[nodiscard]] std::size_t at(std::int64_t x, std::int64_t y, std::int64_t z) const {
+    return static_cast<std::size_t>((z * count_[1] + y) * count_[0] + x);
+  }
   [[nodiscard]] std::size_t place(std::int64_t x, std::int64_t y, std::int64_t z) const {
-    return static_cast<std::size_t>((((z & mask_[2]) << shift_[1] | (y & mask_[1])) << shift_[0]) |
-                                    (x & mask_[0]));
+    return at(turned(x, 0), turned(y, 1), turned(z, 2));
   }
   Cell& with_room(Cell& first);
   void block(const CellIndex& cell, const CellIndex& wide, BodyIndex i,
              std::vector<BodyIndex>& out) const;
   void append(std::size_t place, BodyIndex i, std::vector<BodyIndex>& out) const;
 
-  std::array<std::int64_t, 3> mask_{};
-  std::array<int, 2> shift_{};
+  std::array<std::int64_t, 3> count_{};
+  std::array<std::int64_t, 3> mask_{};  ///< 0: the count is no power of two
   std::vector<Cell> cells_;
   std::vector<Cell> chained_;
   Id free_ = none;

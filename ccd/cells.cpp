@@ -34,7 +34,11 @@ class Cells final : public Neighbourhood {
         places_(model.size()),
         usual_(model.size()) {
     for (BodyIndex i = 0; i < model.size(); ++i) {
-      usual_[i] = model.is_free(i) && bounding_radius(model.shape(i)) <= layout_.radius;
+      usual_[i] =
+          layout_.fits && model.is_free(i) && bounding_radius(model.shape(i)) <= layout_.radius;
+    }
+    if (const auto& periodic = model.scene().periodic) {
+      periodic_ = &*periodic;
     }
   }
 
@@ -54,9 +58,11 @@ class Cells final : public Neighbourhood {
     return exit(i, moving, p, t, until);
   }
 
-  void near(BodyIndex i, std::vector<BodyIndex>& out) override {
+  void near(BodyIndex i, std::vector<Neighbour>& out) override {
     if (places_[i].at == Place::in_cell) {
-      grid_.around(places_[i].cell, i, out);
+      found_.clear();
+      grid_.around(places_[i].cell, i, found_);
+      tell(places_[i].cell, out);
       large_.boxes().overlapping(reach(places_[i].cell), out);
     } else if (places_[i].at == Place::in_box) {
       large_.near(i, out);
@@ -65,7 +71,7 @@ class Cells final : public Neighbourhood {
   }
 
   Instant cross(BodyIndex i, const MovingShape& moving, Instant t, Instant until,
-                std::vector<BodyIndex>& out) override {
+                std::vector<Neighbour>& out) override {
     const double s = t - moving.motion.start;
     if (places_[i].at != Place::in_cell || !fits(i, moving, s)) {
       const Instant crosses = enter(i, moving, t, until);
@@ -77,17 +83,32 @@ class Cells final : public Neighbourhood {
     const CellIndex now = cell_of(p);
     if (now != before) {
       move(i, now);
-      grid_.entered(before, now, i, out);
+      found_.clear();
+      grid_.entered(before, now, i, found_);
+      tell(now, out);
       const Aabb known = reach(before);
       boxes_.clear();
       large_.boxes().overlapping(reach(now), boxes_);
-      for (const BodyIndex j : boxes_) {
-        if (!known.overlaps(large_.swept(j))) {
+      for (const Neighbour& j : boxes_) {
+        const Aabb& swept = large_.swept(j.body);
+        const Vector3 shift =
+            is_zero(j.image) ? Vector3(Vector3::Zero()) : periodic_->shift(j.image);
+        if (!known.overlaps({swept.lower + shift, swept.upper + shift})) {
           out.push_back(j);
         }
       }
     }
     return exit(i, moving, p, t, until);
+  }
+
+  void go_on_as(BodyIndex i, const Image& n) override {
+    if (places_[i].at == Place::in_cell) {  // the same one on the torus
+      for (std::size_t k = 0; k < 3; ++k) {
+        places_[i].cell[k] += n[k] * grid_.count(k);
+      }
+    } else if (places_[i].at == Place::in_box) {
+      large_.go_on_as(i, n);
+    }
   }
 
   void persist(Archive& archive) override {
@@ -134,18 +155,18 @@ class Cells final : public Neighbourhood {
     CellIndex cell;
     for (int k = 0; k < 3; ++k) {
       cell[static_cast<std::size_t>(k)] =
-          static_cast<std::int64_t>(std::floor(p[k] * layout_.per_width));
+          static_cast<std::int64_t>(std::floor(p[k] * layout_.per_width[k]));
     }
     return cell;
   }
-  [[nodiscard]] double corner(std::int64_t c) const {
-    return static_cast<double>(c) * layout_.width;
+  [[nodiscard]] double corner(const CellIndex& cell, int k) const {
+    return static_cast<double>(cell[static_cast<std::size_t>(k)]) * layout_.width[k];
   }
   /// Whether p is in the cell or hardly beyond it: its next crossing is not at once.
   [[nodiscard]] bool inside(const CellIndex& cell, const Vector3& p) const {
     for (int k = 0; k < 3; ++k) {
-      const double x = p[k] - corner(cell[static_cast<std::size_t>(k)]);
-      if (!(x >= -0.5 * layout_.margin && x <= layout_.width + 0.5 * layout_.margin)) {
+      const double x = p[k] - corner(cell, k);
+      if (!(x >= -0.5 * layout_.margin && x <= layout_.width[k] + 0.5 * layout_.margin)) {
         return false;
       }
     }
@@ -157,9 +178,9 @@ class Cells final : public Neighbourhood {
     const double beyond = layout_.margin + layout_.radius + layout_.slack;
     Aabb box;
     for (int k = 0; k < 3; ++k) {
-      const double x = corner(cell[static_cast<std::size_t>(k)]);
+      const double x = corner(cell, k);
       box.lower[k] = x - beyond;
-      box.upper[k] = x + layout_.width + beyond;
+      box.upper[k] = x + layout_.width[k] + beyond;
     }
     return box;
   }
@@ -174,8 +195,8 @@ class Cells final : public Neighbourhood {
     double stays = infinity;
     double least = infinity;
     for (int k = 0; k < 3; ++k) {
-      const double below = p[k] - (corner(places_[i].cell[static_cast<std::size_t>(k)]) - allowed);
-      const double above = layout_.width + 2.0 * allowed - below;
+      const double below = p[k] - (corner(places_[i].cell, k) - allowed);
+      const double above = layout_.width[k] + 2.0 * allowed - below;
       least = std::min({least, below, above});
       if (motion.position.degree() <= 2) {
         const double c = motion.position.degree() == 2 ? motion.position[2][k] : 0.0;
@@ -207,27 +228,78 @@ class Cells final : public Neighbourhood {
     places_[i] = {to, Place::in_cell};
   }
 
+  /// Appends whom `found_` holds, each as the image that is around this cell: bodies that fewer
+  /// than four cells are apart on the torus have one.
+  void tell(const CellIndex& cell, std::vector<Neighbour>& out) const {
+    for (const BodyIndex j : found_) {
+      Neighbour found{j};
+      for (std::size_t k = 0; periodic_ != nullptr && k < 3; ++k) {
+        const std::int64_t apart = cell[k] - places_[j].cell[k];
+        if (periodic_->along[k] && (apart < -1 || apart > 1)) {
+          // A whole number of turns and one cell at most.
+          found.image[k] =
+              static_cast<std::int32_t>((apart + (apart > 0 ? 1 : -1)) / grid_.count(k));
+        }
+      }
+      out.push_back(found);
+    }
+  }
+
   /// Bodies in the cells whose surroundings a box reaches.
-  void near_box(const Aabb& swept, std::vector<BodyIndex>& out) {
+  void near_box(const Aabb& swept, std::vector<Neighbour>& out) {
     const double beyond = layout_.margin + layout_.radius + layout_.slack;
     CellIndex low{};
     CellIndex high{};
+    std::array<bool, 3> everywhere{};
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
       // One more on both sides: these quotients are rounded.
-      const double first = std::floor((swept.lower[axis] - beyond) * layout_.per_width) - 1.0;
-      const double last = std::floor((swept.upper[axis] + beyond) * layout_.per_width) + 1.0;
-      const auto count = static_cast<double>(grid_.count(k));
+      const double per_width = layout_.per_width[axis];
+      const double first = std::floor((swept.lower[axis] - beyond) * per_width) - 1.0;
+      const double last = std::floor((swept.upper[axis] + beyond) * per_width) + 1.0;
       constexpr double countable = 0x1p60;
-      if (!(last - first < count && std::abs(first) < countable)) {
-        low[k] = 0;
-        high[k] = grid_.count(k) - 1;
-      } else {
+      everywhere[k] = !(std::abs(first) < countable && std::abs(last) < countable);
+      if (!everywhere[k]) {
         low[k] = static_cast<std::int64_t>(first);
         high[k] = static_cast<std::int64_t>(last);
       }
     }
-    grid_.within(low, high, out);
+    CellIndex from = low;
+    CellIndex to = high;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (everywhere[k] || high[k] - low[k] >= grid_.count(k)) {
+        from[k] = 0;
+        to[k] = grid_.count(k) - 1;
+      }
+    }
+    found_.clear();
+    grid_.within(from, to, found_);
+    for (const BodyIndex j : found_) {
+      tell_within(j, low, high, everywhere, out);
+    }
+  }
+
+  /// Body j as every image of it in the cells from `low` to `high`.
+  void tell_within(BodyIndex j, const CellIndex& low, const CellIndex& high,
+                   const std::array<bool, 3>& everywhere, std::vector<Neighbour>& out) const {
+    Image least{};
+    Image most{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (periodic_ != nullptr && periodic_->along[k] && !everywhere[k]) {
+        const auto turns = static_cast<double>(grid_.count(k));
+        const std::int64_t cell = places_[j].cell[k];
+        least[k] = static_cast<std::int32_t>(std::ceil(static_cast<double>(low[k] - cell) / turns));
+        most[k] =
+            static_cast<std::int32_t>(std::floor(static_cast<double>(high[k] - cell) / turns));
+      }
+    }
+    for (std::int32_t z = least[2]; z <= most[2]; ++z) {
+      for (std::int32_t y = least[1]; y <= most[1]; ++y) {
+        for (std::int32_t x = least[0]; x <= most[0]; ++x) {
+          out.push_back({j, {x, y, z}});
+        }
+      }
+    }
   }
 
   CellLayout layout_;
@@ -235,7 +307,9 @@ class Cells final : public Neighbourhood {
   SweptWindows large_;
   std::vector<Place> places_;
   std::vector<char> usual_;
-  std::vector<BodyIndex> boxes_;  ///< scratch
+  const PeriodicBox* periodic_ = nullptr;
+  std::vector<Neighbour> boxes_;  ///< scratch
+  std::vector<BodyIndex> found_;
 };
 
 }  // namespace

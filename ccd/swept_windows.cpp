@@ -1,5 +1,6 @@
 #include "ccd/swept_windows.hpp"
 
+#include "ccd/rounding/roundoff.hpp"
 #include "ccd/swept_box.hpp"
 #include "core/archive.hpp"
 
@@ -10,7 +11,18 @@
 namespace kairos::ccd {
 
 SweptWindows::SweptWindows(const Model& model, std::unique_ptr<BroadPhase> boxes, double tolerance)
-    : model_(model), boxes_(std::move(boxes)), tolerance_(tolerance), watched_(model.size()) {}
+    : model_(model),
+      boxes_(model, std::move(boxes)),
+      tolerance_(tolerance),
+      longest_reach_(infinity),
+      watched_(model.size()) {
+  if (const auto& periodic = model.scene().periodic) {
+    for (int k = 0; k < 3; ++k) {
+      const double period = periodic->period()[k];
+      longest_reach_ = period > 0.0 ? std::min(longest_reach_, 0.5 * period) : longest_reach_;
+    }
+  }
+}
 
 Instant SweptWindows::enter(BodyIndex i, const MovingShape& moving, Instant t, Instant until) {
   Instant end = until;
@@ -31,7 +43,7 @@ Instant SweptWindows::enter(BodyIndex i, const MovingShape& moving, Instant t, I
   }
   watched_[i].swept = swept;
   watched_[i].known = true;
-  boxes_->update(i, swept);
+  boxes_.update(i, swept);
   return crosses;
 }
 
@@ -41,6 +53,7 @@ double SweptWindows::window_length(BodyIndex i, const MovingShape& moving, Insta
   if (reach == 0.0) {
     reach = 4.0 * bounding_radius(moving.shape);
   }
+  reach = std::min(reach, longest_reach_);
   const double s = t - moving.motion.start;
   const double speed = moving.motion.velocity(s).norm();
   const double acceleration = moving.motion.acceleration(s).norm();
@@ -48,9 +61,9 @@ double SweptWindows::window_length(BodyIndex i, const MovingShape& moving, Insta
   return 2.0 * reach / (speed + std::sqrt(speed * speed + 2.0 * acceleration * reach));
 }
 
-void SweptWindows::near(BodyIndex i, std::vector<BodyIndex>& out) {
+void SweptWindows::near(BodyIndex i, std::vector<Neighbour>& out) {
   const std::size_t before = out.size();
-  boxes_->candidates(i, out);
+  boxes_.near(i, watched_[i].swept, out);
   // About ten neighbours cost least.
   constexpr std::size_t few = 8;
   constexpr std::size_t many = 16;
@@ -63,15 +76,24 @@ void SweptWindows::near(BodyIndex i, std::vector<BodyIndex>& out) {
 }
 
 Instant SweptWindows::cross(BodyIndex i, const MovingShape& moving, Instant t, Instant until,
-                            std::vector<BodyIndex>& out) {
+                            std::vector<Neighbour>& out) {
   const Instant crosses = enter(i, moving, t, until);
   near(i, out);
   return crosses;
 }
 
+void SweptWindows::go_on_as(BodyIndex i, const Image& n) {
+  Watched& watched = watched_[i];
+  if (watched.known) {
+    const Vector3 shift = model_.scene().periodic->shift(n);
+    watched.swept = {watched.swept.lower + shift, watched.swept.upper + shift};
+    boxes_.update(i, watched.swept);
+  }
+}
+
 void SweptWindows::leave(BodyIndex i) {
   watched_[i].known = false;
-  boxes_->remove(i);
+  boxes_.remove(i);
 }
 
 void SweptWindows::Watched::persist(Archive& archive) {
@@ -83,7 +105,7 @@ void SweptWindows::persist(Archive& archive) {
   if (archive.reading()) {
     for (BodyIndex i = 0; i < watched_.size(); ++i) {
       if (watched_[i].known) {
-        boxes_->update(i, watched_[i].swept);
+        boxes_.update(i, watched_[i].swept);
       }
     }
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ccd/image_boxes.hpp"
 #include "core/model.hpp"
 #include "core/neighbourhood.hpp"
 
@@ -9,18 +10,19 @@
 namespace kairos::ccd {
 
 /// A broad phase of boxes as a neighbourhood: each body opens a window as long as it takes it to go
-/// some way, its *reach*, and is near all whose swept boxes overlap its own. Reaches adapt: windows
-/// grow where few are near and shrink where many are. What does not move freely has one window for
-/// its whole motion.
+/// some way, its *reach*, and is near all whose swept boxes overlap its own, images included.
+/// Reaches adapt: windows grow where few are near and shrink where many are. What does not move
+/// freely has one window for its whole motion.
 class SweptWindows final : public Neighbourhood {
  public:
   /// `tolerance` as in `NeighbourhoodFactory`.
   SweptWindows(const Model& model, std::unique_ptr<BroadPhase> boxes, double tolerance);
 
   Instant enter(BodyIndex i, const MovingShape& moving, Instant t, Instant until) override;
-  void near(BodyIndex i, std::vector<BodyIndex>& out) override;
+  void near(BodyIndex i, std::vector<Neighbour>& out) override;
   Instant cross(BodyIndex i, const MovingShape& moving, Instant t, Instant until,
-                std::vector<BodyIndex>& out) override;
+                std::vector<Neighbour>& out) override;
+  void go_on_as(BodyIndex i, const Image& n) override;
   void persist(Archive& archive) override;
 
   /// Body i is somewhere else.
@@ -28,7 +30,7 @@ class SweptWindows final : public Neighbourhood {
 
   /// What i sweeps during its window, rounding and tolerance included.
   [[nodiscard]] const Aabb& swept(BodyIndex i) const { return watched_[i].swept; }
-  [[nodiscard]] const BroadPhase& boxes() const { return *boxes_; }
+  [[nodiscard]] ImageBoxes& boxes() { return boxes_; }
 
  private:
   struct Watched {
@@ -42,8 +44,9 @@ class SweptWindows final : public Neighbourhood {
   [[nodiscard]] double window_length(BodyIndex i, const MovingShape& moving, Instant t);
 
   const Model& model_;
-  std::unique_ptr<BroadPhase> boxes_;
+  ImageBoxes boxes_;
   double tolerance_;
+  double longest_reach_;  ///< m: half a period, so that a box is near few images
   std::vector<Watched> watched_;
 };
 

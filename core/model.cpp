@@ -123,6 +123,17 @@ void Model::choose_bodies() {
   std::sort(free_by_name_.begin(), free_by_name_.end(),
             [&](BodyIndex a, BodyIndex b) { return body(a).name < body(b).name; });
   decide(tally.decisions("bodies"));
+  if (const auto& box = scene_.periodic) {
+    std::string axes;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (box->along[k]) {
+        axes += fmt::format("{}{}", axes.empty() ? "" : ", ", "xyz"[k]);
+      }
+    }
+    decide({{"space", "is repeated along " + axes,
+             "the scene is periodic: a body meets the images of others; positions go on from box "
+             "to box"}});
+  }
 }
 
 /// What acts beside gravity. A uniform force joins gravity, so that its bodies fall on parabolas.

@@ -3,6 +3,8 @@
 #include "core/broad_phase.hpp"
 #include "core/contact_detector.hpp"
 #include "core/instant.hpp"
+#include "core/periodic_box.hpp"
+#include "core/state.hpp"
 
 #include <functional>
 #include <memory>
@@ -14,6 +16,12 @@ inline namespace core {
 
 class Archive;
 class Model;
+
+/// Somebody who is near: in a periodic box, which image of it.
+struct Neighbour {
+  BodyIndex body = 0;
+  Image image{};
+};
 
 /// Port: which bodies could meet this one, while every body moves from a time of its own?
 ///
@@ -29,11 +37,13 @@ class Neighbourhood {
   virtual Instant enter(BodyIndex i, const MovingShape& moving, Instant t, Instant until) = 0;
   /// Every body that i could meet before it crosses, appended in any order; also all that touch it
   /// now. Some of them it cannot meet.
-  virtual void near(BodyIndex i, std::vector<BodyIndex>& out) = 0;
+  virtual void near(BodyIndex i, std::vector<Neighbour>& out) = 0;
   /// Body i, on the motion with which it entered, has come to the end of what was told of it: those
   /// that it could meet from here on and of which nobody was told, appended. Returns as `enter`.
   virtual Instant cross(BodyIndex i, const MovingShape& moving, Instant t, Instant until,
-                        std::vector<BodyIndex>& out) = 0;
+                        std::vector<Neighbour>& out) = 0;
+  /// Body i is counted on as its image n, on the motion that it has.
+  virtual void go_on_as(BodyIndex i, const Image& n) = 0;
 
   /// What depends on how bodies came to be where they are.
   virtual void persist(Archive& archive) = 0;

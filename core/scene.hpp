@@ -6,6 +6,7 @@
 #include "core/force.hpp"
 #include "core/frame_times.hpp"
 #include "core/joint.hpp"
+#include "core/periodic_box.hpp"
 #include "core/shape.hpp"
 
 #include <map>
@@ -79,6 +80,7 @@ struct Scene {
   std::vector<Body> bodies;  ///< in the order of creation
   std::vector<SceneForce> forces;
   std::vector<Joint> joints;
+  std::optional<PeriodicBox> periodic;  ///< repeated without end; none: space is open
   std::optional<ExactSolution> exact;
 
   /// Restitution of a pair of its bodies, from 0 to 1.

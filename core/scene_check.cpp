@@ -161,6 +161,7 @@ void check_scene(const Scene& scene) {
   }
   check_forces(scene);
   check_joints(scene);
+  check_periodic(scene);
 }
 
 }  // namespace core

@@ -87,7 +87,8 @@ struct SchemeInfo {
   /// Where it moves bodies by a method of its own: what that is called. No other integrator then
   /// has a part in the run, and only `auto` or this name are taken.
   std::string_view integrator = {};
-  bool joints = false;  ///< holds bodies together where a scene has joints
+  bool joints = false;    ///< holds bodies together where a scene has joints
+  bool periodic = false;  ///< knows the images of bodies where a scene is periodic
 };
 
 /// When is the world looked at? Each scheme is one short main loop.

@@ -25,8 +25,13 @@ bool held(BodyIndex a, BodyIndex b, std::span<const char> in_hand) {
 PenetrationProbe::PenetrationProbe(const Model& model)
     : model_(model), detector_(find_detector("certified")), bounds_(swept_bounds()) {
   if (model.broad_phase() != "all-pairs") {
-    broad_phase_ = find_broad_phase(model.broad_phase())(model.size());
+    boxes_ = std::make_unique<ccd::ImageBoxes>(model,
+                                               find_broad_phase(model.broad_phase())(model.size()));
   }
+}
+
+bool PenetrationProbe::finite(BodyIndex i) const {
+  return std::isfinite(bounding_radius(model_.shape(i)));
 }
 
 bool PenetrationProbe::can_penetrate(BodyIndex a, BodyIndex b) const {
@@ -37,7 +42,7 @@ bool PenetrationProbe::can_penetrate(BodyIndex a, BodyIndex b) const {
 template <typename Visit>
 void PenetrationProbe::for_each_near_pair(std::span<const BodyState> bodies,
                                           const Visit& visit) const {
-  if (!broad_phase_) {
+  if (!boxes_) {
     for (const auto& [a, b] : model_.pairs()) {
       if (can_penetrate(a, b) && !visit(a, b)) {
         return;
@@ -45,16 +50,18 @@ void PenetrationProbe::for_each_near_pair(std::span<const BodyState> bodies,
     }
     return;
   }
+  std::vector<Aabb> at(model_.size());
   for (BodyIndex i = 0; i < model_.size(); ++i) {
     const Motion still = Motion::at_rest(Instant{}, bodies[i].pose);
-    broad_phase_->update(i, bounds_({model_.shape(i), still}, {Instant{}, 0.0}));
+    at[i] = bounds_({model_.shape(i), still}, {Instant{}, 0.0});
+    boxes_->update(i, at[i]);
   }
-  std::vector<BodyIndex> near;
+  std::vector<Neighbour> near;
   for (BodyIndex a = 0; a < model_.size(); ++a) {
     near.clear();
-    broad_phase_->candidates(a, near);
-    for (const BodyIndex b : near) {
-      if (a < b && can_penetrate(a, b) && !visit(a, b)) {
+    boxes_->near(a, at[a], near);
+    for (const Neighbour& b : near) {
+      if (a < b.body && can_penetrate(a, b.body) && !visit(a, b.body)) {
         return;
       }
     }
@@ -62,9 +69,13 @@ void PenetrationProbe::for_each_near_pair(std::span<const BodyState> bodies,
 }
 
 double PenetrationProbe::depth(BodyIndex a, const Pose& pose_a, BodyIndex b,
-                               const Pose& pose_b) const {
+                               const Pose& told_b) const {
   if (!can_penetrate(a, b)) {
     return 0.0;
+  }
+  Pose pose_b = told_b;
+  if (const auto& box = model_.scene().periodic; box && finite(a) && finite(b)) {
+    pose_b.position += box->shift(box->nearest(told_b.position - pose_a.position));
   }
   const Shape& shape_a = model_.shape(a);
   const Shape& shape_b = model_.shape(b);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ccd/image_boxes.hpp"
 #include "core/contact_detector.hpp"
 #include "core/model.hpp"
 #include "core/scheme.hpp"
@@ -22,7 +23,8 @@ struct Penetration {
 /// whatever detector a run uses. Pairs of which neither is free are left alone: nobody could part
 /// them.
 ///
-/// Where there are many bodies, only those are asked that a broad phase finds near each other.
+/// Where there are many bodies, only those are asked that a broad phase finds near each other. In a
+/// periodic box the nearest images of two bodies are looked at.
 ///
 /// Tolerance (roundoff): what 16 eps times the coordinates and extents can account for is touching
 /// and not penetration; a ball at rest on a floor stands at a rounded height.
@@ -42,13 +44,14 @@ class PenetrationProbe {
                                                  std::span<const char> in_hand = {}) const;
 
  private:
+  [[nodiscard]] bool finite(BodyIndex i) const;
   [[nodiscard]] bool can_penetrate(BodyIndex a, BodyIndex b) const;
   template <typename Visit>
   void for_each_near_pair(std::span<const BodyState> bodies, const Visit& visit) const;
 
   const Model& model_;
   std::shared_ptr<const ContactDetector> detector_;
-  std::unique_ptr<BroadPhase> broad_phase_;  ///< null where the model asks every pair
+  std::unique_ptr<ccd::ImageBoxes> boxes_;  ///< null where the model asks every pair
   SweptBounds bounds_;
 };
 

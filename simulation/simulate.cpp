@@ -150,6 +150,12 @@ std::string refusal(const Model& model, const Plan& plan) {
         "them (see `kairos list`)",
         scheme.name);
   }
+  if (model.scene().periodic && (!scheme.periodic || detector.at_step_ends)) {
+    return fmt::format(
+        "the scene is periodic, and {} '{}' looks at bodies only where they are, not at their "
+        "images; allowed: scheme event-driven with a detector that locates contacts",
+        scheme.periodic ? "detector" : "scheme", scheme.periodic ? detector.name : scheme.name);
+  }
   if (const LawInfo law = plan.method.law->info(); model.has_friction() && !law.friction) {
     return fmt::format(
         "the scene has friction, of which impact law '{}' knows nothing; allowed: newton, routh; "

@@ -125,6 +125,40 @@ void read_joints(const Item& item, Scene& scene) {
   }
 }
 
+PeriodicBox read_periodic(const Item& item) {
+  const TableReader table(item);
+  table.refuse_unknown(scene_keys_of("periodic"));
+  PeriodicBox box;
+  const Item high = table.need("max", "an array of 3 numbers (m)");
+  box.lowest = table.need("min", "an array of 3 numbers (m)").vector(limits::position);
+  box.highest = high.vector(limits::position);
+  box.along = {true, true, true};
+  if (const auto axes = table.find("axes")) {
+    constexpr std::string_view names[] = {"x", "y", "z"};
+    box.along = {};
+    const Array& listed = axes->array();
+    for (std::size_t i = 0; i < listed.size(); ++i) {
+      const Item axis(listed[i], fmt::format("{}[{}]", axes->path(), i));
+      bool& along = box.along[axis.choice(names)];
+      if (along) {
+        axis.fail("is there twice");
+      }
+      along = true;
+    }
+    if (listed.empty()) {
+      axes->fail("is empty; allowed: one or more of x, y, z");
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    if (box.along[static_cast<std::size_t>(k)] && !(box.highest[k] > box.lowest[k])) {
+      high.fail(
+          "is not above min along every axis that repeats; allowed: numbers above those of "
+          "min (m)");
+    }
+  }
+  return box;
+}
+
 Scene read(const TableReader& table, const std::string& path) {
   table.refuse_unknown(scene_keys_of(""));
   const std::filesystem::path file(path);
@@ -168,6 +202,9 @@ Scene read(const TableReader& table, const std::string& path) {
   };
   scene.friction_combine = combination("friction_combine", scene.friction_combine);
   scene.restitution_combine = combination("restitution_combine", scene.restitution_combine);
+  if (const auto periodic = table.find("periodic")) {
+    scene.periodic = read_periodic(*periodic);
+  }
   const auto many = table.find("many");
   if (!many || table.has("body")) {
     read_bodies(table.need("body", "at least one [[body]]"), defaults, scene);

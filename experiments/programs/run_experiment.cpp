@@ -4,6 +4,7 @@
 #include "core/nearest_name.hpp"
 #include "experiments/ablation/ablation_experiment.hpp"
 #include "experiments/extremes/extremes_experiment.hpp"
+#include "experiments/gas/gas_experiment.hpp"
 #include "experiments/realtime/realtime_experiment.hpp"
 #include "experiments/references/references_experiment.hpp"
 #include "experiments/tradeoff/tradeoff_experiment.hpp"
@@ -17,11 +18,12 @@
 namespace kairos::experiments {
 namespace {
 
-constexpr std::array<ExperimentProgram, 5> programs{{{"tradeoff", run_tradeoff},
+constexpr std::array<ExperimentProgram, 6> programs{{{"tradeoff", run_tradeoff},
                                                      {"extremes", run_extremes},
                                                      {"real-time", run_realtime},
                                                      {"ablation", run_ablation},
-                                                     {"contact-truths", run_references}}};
+                                                     {"contact-truths", run_references},
+                                                     {"gas", run_gas}}};
 
 const ExperimentProgram& program_of(const ExperimentSpec& spec) {
   std::vector<std::string_view> names;

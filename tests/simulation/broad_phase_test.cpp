@@ -1,11 +1,10 @@
-#include "core/archive.hpp"
-#include "core/checkpoint.hpp"
 #include "core/random.hpp"
 #include "core/reading/scene_reader.hpp"
 #include "core/scene.hpp"
 #include "simulation/registry.hpp"
 #include "simulation/simulate.hpp"
 #include "tests/catch.hpp"
+#include "tests/simulation/event_digest.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +15,7 @@
 // The broad phase changes what a run costs and not what happens in it.
 
 using namespace kairos;
+using tests::EventDigest;
 
 namespace {
 
@@ -177,34 +177,6 @@ std::string room(bool turned) {
   return text;
 }
 
-/// Every bit of every event, bodies by name; and the world at 1 s.
-class Digest : public Recorder, public CheckpointKeeper {
- public:
-  void begin(const Model& model) override { model_ = &model; }
-  void event(const Event& event) override {
-    Archive bits;
-    std::string names = model_->body(event.a).name + " and " + model_->body(event.b).name;
-    Event copy = event;
-    bits(text_, names, copy.time, copy.after_a, copy.after_b);
-    text_ = fingerprint(bits.bytes());
-    ++events;
-  }
-  bool persist(Archive& archive) override {
-    archive(text_, events);
-    return true;
-  }
-  [[nodiscard]] bool wants(Instant t, bool last) override { return !last && t.seconds < 1.01; }
-  void keep(Instant, std::string_view world) override { kept = std::string(world); }
-  [[nodiscard]] const std::string& text() const { return text_; }
-
-  std::int64_t events = 0;
-  std::string kept;
-
- private:
-  const Model* model_ = nullptr;
-  std::string text_;
-};
-
 }  // namespace
 
 TEST_CASE("one digest over broad phases, orders of bodies and resumed runs", "[broad-phase]") {
@@ -213,7 +185,7 @@ TEST_CASE("one digest over broad phases, orders of bodies and resumed runs", "[b
     for (const std::string_view name : broad_phases()) {
       CAPTURE(name, turned);
       const Model model = model_of(room(turned), name);
-      Digest whole;
+      EventDigest whole;
       const RunResult result = simulate(model, {}, whole, {.keeper = &whole});
       CAPTURE(result.reason);
       REQUIRE(result.status == RunStatus::completed);
@@ -221,7 +193,7 @@ TEST_CASE("one digest over broad phases, orders of bodies and resumed runs", "[b
       reference = reference.empty() ? whole.text() : reference;
       CHECK(whole.text() == reference);
       REQUIRE_FALSE(whole.kept.empty());
-      Digest rest;
+      EventDigest rest;
       const RunResult resumed = simulate(model, {}, rest, {.resume = whole.kept});
       CHECK(rest.text() == reference);
       CHECK(resumed.cost.toi_queries == result.cost.toi_queries);

@@ -22,11 +22,12 @@ Agenda::Agenda(const Model& model)
   }
 }
 
-void Agenda::push(Instant t, Due due, BodyIndex a, BodyIndex b, double patience, bool decided) {
+void Agenda::push(Instant t, Due due, BodyIndex a, BodyIndex b, double patience, bool decided,
+                  const Image& image) {
   if (heap_.size() >= crowded_) {
     sweep_out();
   }
-  heap_.push_back({t, due, rank_[a], rank_[b], version_[a], version_[b], patience, decided});
+  heap_.push_back({t, due, rank_[a], rank_[b], version_[a], version_[b], patience, decided, image});
   std::push_heap(heap_.begin(), heap_.end(), later);
 }
 
@@ -101,7 +102,14 @@ DueEvent Agenda::pop() {
   heap_.pop_back();
   const BodyIndex a = by_name_[entry.a];
   const BodyIndex b = by_name_[entry.b];
-  return {entry.time, entry.due, a, b, entry.patience, entry.decided, stale(entry)};
+  return {.time = entry.time,
+          .due = entry.due,
+          .a = a,
+          .b = b,
+          .patience = entry.patience,
+          .decided = entry.decided,
+          .stale = stale(entry),
+          .image = entry.image};
 }
 
 /// Where impacts follow each other much faster than what was predicted far ahead comes up, stale
@@ -115,7 +123,7 @@ void Agenda::sweep_out() {
 }
 
 void Agenda::Entry::persist(Archive& archive) {
-  archive(time, due, a, b, version_a, version_b, patience, decided);
+  archive(time, due, a, b, version_a, version_b, patience, decided, image);
 }
 
 void Agenda::Record::persist(Archive& archive) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/model.hpp"
+#include "core/periodic_box.hpp"
 #include "core/schemes/event/event_calendar.hpp"
 
 #include <algorithm>
@@ -42,6 +43,7 @@ struct DueEvent {
   bool stale = false;     ///< one of the two has moved otherwise since it was predicted
   bool own = false;       ///< the earliest meeting of `owner`: it knows of no later one
   BodyIndex owner = 0;
+  Image image{};  ///< recheck: of b, as a sees it
 };
 
 /// What is due, earliest first. Bodies go by their rank in alphabetical order, so that neither the
@@ -59,7 +61,7 @@ class Agenda {
     return (!heap_.empty() && heap_.front().time < t) || (first != nullptr && first->time < t);
   }
   void push(Instant t, Due due, BodyIndex a, BodyIndex b, double patience = 0.0,
-            bool decided = true);
+            bool decided = true, const Image& image = {});
   [[nodiscard]] DueEvent pop();
   /// Body i has a new motion: all that was predicted of it is stale. Recognised when it comes up.
   void renew(BodyIndex i) { ++version_[i]; }
@@ -101,6 +103,7 @@ class Agenda {
     std::uint32_t version_b = 0;
     double patience = 0.0;
     bool decided = true;
+    Image image{};
 
     void persist(Archive& archive);
     /// As that of an entry of the calendar.

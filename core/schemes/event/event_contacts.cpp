@@ -107,6 +107,10 @@ void EventContacts::stay(BodyIndex a, BodyIndex b, Instant t) {
       motions_.bring(i, t);
     }
   }
+  (void)meet_in_one_box(a, b, t);
+  if (run_.stopped()) {
+    return depart(a, b, t);
+  }
   const Contact contact = contact_at(a, b, t, 0.0);
   if (lands(a, b, contact, t) || settle(pair, t, {.unloaded = true})) {
     return;

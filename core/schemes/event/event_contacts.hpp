@@ -49,6 +49,7 @@ class EventContacts {
     void persist(Archive& archive);
   };
 
+  bool meet_in_one_box(BodyIndex a, BodyIndex b, Instant t);
   void strike(Event& event);
   [[nodiscard]] const JointSystem* joints_of(BodyIndex i) const;
   void strike_jointed(Event& event);

@@ -41,6 +41,7 @@ class EventDriven final : public Scheme {
                     true};
     info.friction = true;
     info.joints = true;
+    info.periodic = true;
     return info;
   }
 

@@ -32,6 +32,32 @@ Vector3 nearest_point(const ContactManifold& manifold, const Vector3& x) {
 
 }  // namespace
 
+/// Where the one meets an image of the other, that goes on as this image; whether it did.
+bool EventContacts::meet_in_one_box(BodyIndex a, BodyIndex b, Instant t) {
+  const auto& box = run_.model.scene().periodic;
+  if (!box || std::holds_alternative<HalfSpace>(run_.model.shape(a)) ||
+      std::holds_alternative<HalfSpace>(run_.model.shape(b))) {
+    return false;
+  }
+  const BodyIndex mover = predictor_.mover(a, b);
+  const BodyIndex other = mover == a ? b : a;
+  const Image n =
+      box->nearest(motions_.now(mover).pose.position - motions_.now(other).pose.position);
+  if (is_zero(n)) {
+    return false;
+  }
+  if (!predictor_.goes_alone(mover)) {
+    run_.stop(t, fmt::format("contact: {} meet across the side of the periodic box, and both are "
+                             "held by what they touch, which is not kept; {}",
+                             run_.names(a, b), part_them));
+    return false;
+  }
+  motions_.go_on_as(mover, n);
+  predictor_.go_on_as(mover, n);
+  motions_.bring(mover, t);
+  return true;
+}
+
 void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double patience, bool decided) {
   for (const BodyIndex i : {a, b}) {
     if (run_.model.is_free(i)) {
@@ -41,6 +67,10 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double patience,
       motions_.bring(i, t);
     }
   }
+  const bool moved = meet_in_one_box(a, b, t);
+  if (run_.stopped()) {
+    return depart(a, b, t);
+  }
   Event event{.time = t, .kind = EventKind::impact, .a = a, .b = b};
   event.contact = contact_at(a, b, t, patience);
   const double approach = normal_velocity(event.contact, motions_.now(a), motions_.now(b));
@@ -49,7 +79,8 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double patience,
     if (!could_be_supported(a, b, t) && settle(pair, t, {.pressed = BodyPair{a, b}})) {
       return;
     }
-    return look_again(a, b, t, patience);
+    // What is counted on as another image is launched before it is asked about again.
+    return moved ? relaunch(a, b, t) : look_again(a, b, t, patience);
   }
   if (approach >= 0.0 && run_.law.info().needs_contact) {
     return touch(a, b, event.contact, t);

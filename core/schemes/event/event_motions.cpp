@@ -209,7 +209,27 @@ void EventMotions::set_motion(BodyIndex i, const Motion& motion) {
   set_flight(i);
   run_.agenda.renew(i);
   if (run_.wants_motions) {
-    run_.recorder.motion(i, motion);
+    tell_motion(i, motion);
+  }
+}
+
+void EventMotions::tell_motion(BodyIndex i, const Motion& motion) {
+  if (run_.boxes_on.empty() || is_zero(run_.boxes_on[i])) {
+    return run_.recorder.motion(i, motion);
+  }
+  Motion told = motion;
+  told.position[0] += run_.way_told(i);
+  run_.recorder.motion(i, told);
+}
+
+void EventMotions::go_on_as(BodyIndex i, const Image& n) {
+  const Vector3 shift = run_.model.scene().periodic->shift(n);
+  bodies_[i].motion.position[0] += shift;
+  set_flight(i);
+  now_[i].pose.position += shift;
+  booked_[i].pose.position += shift;
+  for (std::size_t k = 0; k < 3; ++k) {
+    run_.boxes_on[i][k] -= n[k];
   }
 }
 
@@ -257,7 +277,7 @@ void EventMotions::hold(Flow& flow, Instant t) {
     until = std::min(until, lift_off_time(under, n, mass, net_force(i)));
     motion = ride(motion, under, n);
     if (run_.wants_motions) {
-      run_.recorder.motion(i, motion);
+      tell_motion(i, motion);
     }
   }
   if (!run_.model.islands()[run_.model.island_of(i)].forces.empty()) {

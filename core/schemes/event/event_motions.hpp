@@ -89,6 +89,10 @@ class EventMotions {
   void carry(BodyIndex i, BodyIndex hand, const BodyState& state, Instant t);
   void let_go(BodyIndex i) { flow_of(i).carried = false; }
 
+  /// Body i, which nothing holds, goes on as its image n: it is the same for whoever is told. The
+  /// ledger has followed it to where it is `now`; it is launched before it is asked about again.
+  void go_on_as(BodyIndex i, const Image& n);
+
   /// The surface that ball i rests or slides on.
   [[nodiscard]] const std::optional<Support>& support(BodyIndex i) const {
     return bodies_[i].support;
@@ -157,6 +161,7 @@ class EventMotions {
   void next_segment(Flow& flow, Instant t);
   void drive(BodyIndex i, Instant t);
   void set_motion(BodyIndex i, const Motion& motion);
+  void tell_motion(BodyIndex i, const Motion& motion);
   void set_flight(BodyIndex i);
   void hold(Flow& flow, Instant t);
   void set_forces(Flow& flow);

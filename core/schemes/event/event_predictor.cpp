@@ -14,7 +14,7 @@ inline namespace core {
 EventPredictor::EventPredictor(EventRun& run, const EventMotions& motions, const Grasps& grasps,
                                const ContactGraph& graph, const Method& method)
     : run_(run), motions_(motions), grasps_(grasps), graph_(graph), bodies_(run.model.size()) {
-  if (run.model.broad_phase() != "all-pairs") {
+  if (run.model.broad_phase() != "all-pairs" || run.model.scene().periodic) {
     neighbourhood_ = method.neighbourhood(run.model, run.options.toi_tolerance);
     return;
   }
@@ -29,7 +29,7 @@ void EventPredictor::predict(BodyIndex i, Instant t, BodyIndex except) {
   if (!neighbourhood_) {
     for (const BodyIndex j : bodies_[i].partners) {
       if (j != except) {
-        predict_near(i, j);
+        predict_near(i, {j});
       }
     }
     return;
@@ -37,7 +37,7 @@ void EventPredictor::predict(BodyIndex i, Instant t, BodyIndex except) {
   enter(i, t);
   neighbours_.clear();
   neighbourhood_->near(i, neighbours_);
-  std::erase(neighbours_, except);
+  std::erase_if(neighbours_, [except](const Neighbour& j) { return j.body == except; });
   survey(i, before_all);
   run_.agenda.file(i);
 }
@@ -66,7 +66,7 @@ void EventPredictor::predict_all(Instant t) {
   }
   if (!neighbourhood_) {
     for (const auto& [a, b] : run_.model.pairs()) {
-      predict_near(a, b);
+      predict_near(a, {b});
     }
     return;
   }
@@ -76,7 +76,8 @@ void EventPredictor::predict_all(Instant t) {
   for (const BodyIndex i : run_.agenda.by_name()) {
     neighbours_.clear();
     neighbourhood_->near(i, neighbours_);
-    std::erase_if(neighbours_, [&](BodyIndex j) {
+    std::erase_if(neighbours_, [&](const Neighbour& near) {
+      const BodyIndex j = near.body;
       const bool mine = keeps_meeting(i, j);
       return mine == keeps_meeting(j, i) ? j < i : !mine;
     });
@@ -89,11 +90,11 @@ void EventPredictor::predict_all(Instant t) {
 /// Asks about i and all of `neighbours_`.
 void EventPredictor::survey(BodyIndex i, Instant known) {
   balls_.clear();
-  for (const BodyIndex j : neighbours_) {
-    if (!run_.model.interacts(i, j)) {
+  for (const Neighbour& j : neighbours_) {
+    if (!run_.model.interacts(i, j.body)) {
       continue;
     }
-    if (motions_.flies(i) && motions_.flies(j)) {
+    if (motions_.flies(i) && motions_.flies(j.body)) {
       balls_.push_back(j);
     } else {
       predict_near(i, j, known);
@@ -106,8 +107,16 @@ void EventPredictor::survey(BodyIndex i, Instant known) {
 /// its earliest meeting comes up.
 void EventPredictor::meet_balls(BodyIndex i, Instant known) {
   flights_.clear();
-  for (const BodyIndex j : balls_) {
-    flights_.push_back(motions_.flight(j));
+  for (const Neighbour& j : balls_) {
+    flights_.push_back(motions_.flight(j.body));
+    if (!is_zero(j.image)) {
+      BallFlight& flight = flights_.back();
+      const Vector3 shift = run_.model.scene().periodic->shift(j.image);
+      flight.position += shift;
+      // The sum is rounded, and a query may round the other way.
+      constexpr double roundings = 8.0 * std::numeric_limits<double>::epsilon();
+      flight.radius += roundings * (flight.position.lpNorm<1>() + shift.lpNorm<1>());
+    }
   }
   clear_.resize(balls_.size());
   const BallFlight& own = motions_.flight(i);
@@ -124,7 +133,7 @@ void EventPredictor::meet_balls(BodyIndex i, Instant known) {
     if (run_.agenda.meeting(i) < next->clear) {
       return;
     }
-    predict_near(i, next->body, known);
+    predict_near(i, next->who, known);
     *next = near_.back();
     near_.pop_back();
   }
@@ -151,18 +160,36 @@ void EventPredictor::solids_near(BodyIndex i, std::vector<BodyIndex>& out) {
   }
   neighbours_.clear();
   neighbourhood_->near(i, neighbours_);
-  std::for_each(neighbours_.begin(), neighbours_.end(), add);
+  for (const Neighbour& j : neighbours_) {
+    if (is_zero(j.image)) {
+      add(j.body);
+    }
+  }
 }
 
-void EventPredictor::predict_near(BodyIndex i, BodyIndex j, Instant known) {
-  ask(i, j, std::max(bodies_[i].since, bodies_[j].since), known);
+bool EventPredictor::goes_alone(BodyIndex i) const {
+  if (!run_.model.is_free(i) || graph_.holds(i)) {
+    return false;
+  }
+  const auto& support = motions_.support(i);
+  return !support || std::holds_alternative<HalfSpace>(run_.model.shape(support->surface));
 }
 
-void EventPredictor::predict_pair(BodyIndex i, BodyIndex j, Instant t) { ask(i, j, t, before_all); }
+void EventPredictor::go_on_as(BodyIndex i, const Image& n) { neighbourhood_->go_on_as(i, n); }
 
-void EventPredictor::ask(BodyIndex i, BodyIndex j, Instant from, Instant known) {
+void EventPredictor::predict_near(BodyIndex i, const Neighbour& j, Instant known) {
+  ask(i, j, std::max(bodies_[i].since, bodies_[j.body].since), known);
+}
+
+void EventPredictor::predict_pair(BodyIndex i, BodyIndex j, const Image& n, Instant t) {
+  ask(i, {j, n}, t, before_all);
+}
+
+void EventPredictor::ask(BodyIndex i, const Neighbour& other, Instant from, Instant known) {
   // Queries go by name, so that their bits do not depend on who asks.
-  const auto [a, b] = run_.agenda.before(i, j) ? std::pair{i, j} : std::pair{j, i};
+  const BodyIndex j = other.body;
+  const bool in_order = run_.agenda.before(i, j);
+  const auto [a, b] = in_order ? std::pair{i, j} : std::pair{j, i};
   const bool leaving = grasps_.leaving(a, b).has_value();
   if (!leaving && grasps_.involve(a, b)) {
     return;
@@ -175,7 +202,8 @@ void EventPredictor::ask(BodyIndex i, BodyIndex j, Instant from, Instant known) 
   if (!(duration > 0.0)) {
     return;
   }
-  const Question question{a, b, from, duration, known, keeps_meeting(i, j), i};
+  const Question question{
+      a, b, from, duration, known, keeps_meeting(i, j), i, in_order ? other.image : -other.image};
   if (leaving) {
     predict_parting(question, Due::clear_of_hand);
   } else if (motions_.is_in_field(a, b) || motions_.is_in_field(b, a)) {
@@ -190,12 +218,15 @@ void EventPredictor::push(const Question& of, double after, Due due, double pati
                           bool decided) {
   const Instant t = of.from + after;
   if (!(of.known < t)) {
+    if (due == Due::recheck) {  // what it told is over: what follows is not known yet
+      ask(of.a, {of.b, of.image}, t, of.known);
+    }
     return;
   }
   if (of.kept && due == Due::impact && decided) {
     run_.agenda.meet(of.asker, of.asker == of.a ? of.b : of.a, t, patience);
   } else {
-    run_.agenda.push(t, due, of.a, of.b, patience, decided);
+    run_.agenda.push(t, due, of.a, of.b, patience, decided, of.image);
   }
 }
 
@@ -205,9 +236,36 @@ TimeOfImpact EventPredictor::counted(const TimeOfImpact& toi) {
   return toi;
 }
 
-TimeOfImpact EventPredictor::time_of_impact(BodyIndex a, BodyIndex b, Instant t, double duration) {
-  return counted(run_.detector.time_of_impact(motions_.moving(a), motions_.moving(b), {t, duration},
+/// How one of the two moves as the other sees it.
+Motion EventPredictor::motion_of(BodyIndex i, const Question& of) const {
+  Motion motion = motions_.of(i);
+  if (!is_zero(of.image) && i == mover(of.a, of.b)) {
+    motion.position[0] += run_.model.scene().periodic->shift(i == of.b ? of.image : -of.image);
+  }
+  return motion;
+}
+
+TimeOfImpact EventPredictor::time_of_impact(const Question& of, double duration) {
+  const Window window{of.from, duration};
+  if (is_zero(of.image)) {
+    return counted(run_.detector.time_of_impact(motions_.moving(of.a), motions_.moving(of.b),
+                                                window, run_.options.toi_tolerance));
+  }
+  const Motion a = motion_of(of.a, of);
+  const Motion b = motion_of(of.b, of);
+  return counted(run_.detector.time_of_impact({run_.model.shape(of.a), a},
+                                              {run_.model.shape(of.b), b}, window,
                                               run_.options.toi_tolerance));
+}
+
+/// `touching_gap` where one of the two is told as an image.
+double EventPredictor::allowed_gap(const Question& of) const {
+  const double gap = touching_gap(of.a, of.b);
+  if (is_zero(of.image)) {
+    return gap;
+  }
+  return gap + 704.0 * std::numeric_limits<double>::epsilon() *
+                   run_.model.scene().periodic->shift(of.image).lpNorm<1>();
 }
 
 double EventPredictor::touching_gap(BodyIndex a, BodyIndex b) const {
@@ -240,9 +298,9 @@ double EventPredictor::touching_gap(BodyIndex a, BodyIndex b) const {
 void EventPredictor::look_nearer(const Question& question, TimeOfImpact toi) {
   constexpr double worth_it = 1.0 / 16.0;  // of the window
   constexpr int most_tries = 40;           // to 1e-24 of the window
-  const auto& [a, b, t, whole, known, kept, asker] = question;
-  const double allowed = touching_gap(a, b);
-  double duration = whole;
+  const Instant t = question.from;
+  const double allowed = allowed_gap(question);
+  double duration = question.duration;
   for (int k = 0; k < most_tries; ++k) {
     const bool touching = toi.status != ToiStatus::undecided || toi.gap <= allowed;
     if (touching && toi.status != ToiStatus::separated) {
@@ -253,13 +311,14 @@ void EventPredictor::look_nearer(const Question& question, TimeOfImpact toi) {
       return push(question, free, Due::recheck);
     }
     duration *= 0.25;
-    toi = time_of_impact(a, b, t, duration);
+    toi = time_of_impact(question, duration);
   }
   run_.stop(t,
             fmt::format("undecided: whether {} meet, {} m apart, in the next {} s: the detector "
                         "'{}' ran out of work; allowed: a slower rotation, a larger --tolerance, "
                         "or another detector",
-                        run_.names(a, b), toi.gap, duration, run_.detector.info().name));
+                        run_.names(question.a, question.b), toi.gap, duration,
+                        run_.detector.info().name));
 }
 
 /// A field is entered where contact is proven; solids never get that far.
@@ -270,8 +329,8 @@ void EventPredictor::push_meeting(const Question& of, const TimeOfImpact& toi) {
 }
 
 void EventPredictor::predict_meeting(const Question& question) {
-  const auto& [a, b, t, duration, known, kept, asker] = question;
-  const TimeOfImpact toi = time_of_impact(a, b, t, duration);
+  const auto [a, b] = std::pair{question.a, question.b};
+  const TimeOfImpact toi = time_of_impact(question, question.duration);
   if (!run_.model.is_free(a) && !run_.model.is_free(b)) {
     return;  // asked all the same where nothing is left out; nothing can come of it
   }
@@ -280,7 +339,7 @@ void EventPredictor::predict_meeting(const Question& question) {
     case ToiStatus::separated:
       return;
     case ToiStatus::undecided:
-      if (toi.gap > touching_gap(a, b)) {
+      if (toi.gap > allowed_gap(question)) {
         return look_nearer(question, toi);
       }
       return push_meeting(question, toi);
@@ -294,21 +353,26 @@ void EventPredictor::predict_meeting(const Question& question) {
 /// Two solids that a computation left inside each other, by roundoff: an impact if they approach,
 /// and nothing if they part; a pair that stays would fall through, unless it can be held.
 void EventPredictor::leave_overlap(const Question& question) {
-  const auto& [a, b, t, duration, known, kept, asker] = question;
-  const BodyState state_a = motions_.at(a, t);
-  const BodyState state_b = motions_.at(b, t);
+  const auto [a, b] = std::pair{question.a, question.b};
+  const auto state_of = [&](BodyIndex i) {
+    const Motion motion = motion_of(i, question);
+    const double s = std::min(question.from - motion.start, motion.duration);
+    return BodyState{motion.pose(s), motion.twist(s)};
+  };
+  const BodyState state_a = state_of(a);
+  const BodyState state_b = state_of(b);
   const Overlap o =
       run_.detector.overlap(run_.model.shape(a), state_a.pose, run_.model.shape(b), state_b.pose);
   if (normal_velocity({o.point, o.normal, o.gap}, state_a, state_b) < 0.0) {
     return push(question, 0.0, Due::impact);
   }
-  const TimeOfImpact meanwhile = without_errors(a, b, t, duration);
+  const TimeOfImpact meanwhile = without_errors(question);
   if (meanwhile.status == ToiStatus::impact || meanwhile.status == ToiStatus::undecided) {
     return push_meeting(question, meanwhile);
   }
   // A detector that proves nothing lets them overlap by what it misses.
   const bool deeper = meanwhile.status == ToiStatus::overlapping && run_.detector.info().proves;
-  const TimeOfImpact parting = time_of_separation(a, b, t, duration);
+  const TimeOfImpact parting = time_of_separation(question);
   if (deeper || parting.status == ToiStatus::overlapping) {
     return push(question, 0.0, Due::stays);
   }
@@ -317,30 +381,31 @@ void EventPredictor::leave_overlap(const Question& question) {
 
 /// When they touch as their motions are told, without what these may err by: with it a pair in
 /// touch overlaps for a while, and could go deeper at another place than where it parts.
-TimeOfImpact EventPredictor::without_errors(BodyIndex a, BodyIndex b, Instant t, double duration) {
-  Motion motion_a = motions_.of(a);
-  Motion motion_b = motions_.of(b);
+TimeOfImpact EventPredictor::without_errors(const Question& of) {
+  Motion motion_a = motion_of(of.a, of);
+  Motion motion_b = motion_of(of.b, of);
   motion_a.error_radius = motion_b.error_radius = 0.0;
-  const TimeOfImpact toi =
-      run_.detector.time_of_impact({run_.model.shape(a), motion_a}, {run_.model.shape(b), motion_b},
-                                   {t, duration}, run_.options.toi_tolerance);
+  const TimeOfImpact toi = run_.detector.time_of_impact(
+      {run_.model.shape(of.a), motion_a}, {run_.model.shape(of.b), motion_b},
+      {of.from, of.duration}, run_.options.toi_tolerance);
   ++run_.cost.toi_queries;
   run_.cost.toi_evaluations += toi.evaluations;
   return toi;
 }
 
 void EventPredictor::predict_parting(const Question& question, Due due) {
-  const auto& [a, b, t, duration, known, kept, asker] = question;
-  const TimeOfImpact toi = time_of_separation(a, b, t, duration);
+  const TimeOfImpact toi = time_of_separation(question);
   if (toi.status != ToiStatus::overlapping) {
     push(question, toi.t_hi, due);
   }
 }
 
-TimeOfImpact EventPredictor::time_of_separation(BodyIndex a, BodyIndex b, Instant t,
-                                                double duration) {
-  return counted(run_.detector.time_of_separation(motions_.moving(a), motions_.moving(b),
-                                                  {t, duration}, run_.options.toi_tolerance));
+TimeOfImpact EventPredictor::time_of_separation(const Question& of) {
+  const Motion a = motion_of(of.a, of);
+  const Motion b = motion_of(of.b, of);
+  return counted(
+      run_.detector.time_of_separation({run_.model.shape(of.a), a}, {run_.model.shape(of.b), b},
+                                       {of.from, of.duration}, run_.options.toi_tolerance));
 }
 
 void EventPredictor::Watched::persist(Archive& archive) { archive(since); }

@@ -33,10 +33,17 @@ class EventPredictor {
   void cross(BodyIndex i, Instant t);
   /// The earliest meeting of i was not what it seemed, or is over.
   void renew(BodyIndex i, Instant t);
-  /// A pair whose last answer told nothing beyond t.
-  void predict_pair(BodyIndex i, BodyIndex j, Instant t);
+  /// A pair whose last answer told nothing beyond t: i and the image n of j.
+  void predict_pair(BodyIndex i, BodyIndex j, const Image& n, Instant t);
+  /// Body i is counted on as its image n, on the motion that it has.
+  void go_on_as(BodyIndex i, const Image& n);
+  /// Of two that meet in different boxes, which is counted on in that of the other, and so is
+  /// seen where the other is while the two are asked about: b if it moves by itself, else a.
+  [[nodiscard]] BodyIndex mover(BodyIndex a, BodyIndex b) const { return goes_alone(b) ? b : a; }
+  /// Whether nothing holds body i where it is.
+  [[nodiscard]] bool goes_alone(BodyIndex i) const;
 
-  /// Solids that body i could touch now, appended.
+  /// Solids in its own box that body i could touch now, appended.
   void solids_near(BodyIndex i, std::vector<BodyIndex>& out);
 
   /// Beyond this gap two bodies do not touch, m: twice what a detector may leave between them (its
@@ -63,10 +70,11 @@ class EventPredictor {
     Instant known;
     bool kept = false;  ///< whether a meeting is kept as that of `asker`
     BodyIndex asker = 0;
+    Image image{};  ///< of b, as a sees it
   };
   /// Who may be near, and no meeting with whom is due before.
   struct Near {
-    BodyIndex body = 0;
+    Neighbour who;
     Instant clear;
   };
   static constexpr Instant before_all{-std::numeric_limits<double>::infinity(), 0.0};
@@ -76,23 +84,24 @@ class EventPredictor {
     return std::min(motions_.of(i).end(), run_.epoch_end);
   }
   void enter(BodyIndex i, Instant t);
-  void predict_near(BodyIndex i, BodyIndex j, Instant known = before_all);
+  void predict_near(BodyIndex i, const Neighbour& j, Instant known = before_all);
   void survey(BodyIndex i, Instant known);
   void meet_balls(BodyIndex i, Instant known);
   [[nodiscard]] bool keeps_meeting(BodyIndex i, BodyIndex with) const;
-  void ask(BodyIndex i, BodyIndex j, Instant from, Instant known);
+  void ask(BodyIndex i, const Neighbour& j, Instant from, Instant known);
   void push(const Question& of, double after, Due due, double patience = 0.0, bool decided = true);
   void predict_meeting(const Question& question);
-  [[nodiscard]] TimeOfImpact time_of_impact(BodyIndex a, BodyIndex b, Instant t, double duration);
+  [[nodiscard]] TimeOfImpact time_of_impact(const Question& of, double duration);
+  [[nodiscard]] Motion motion_of(BodyIndex i, const Question& of) const;
+  [[nodiscard]] double allowed_gap(const Question& of) const;
   void push_meeting(const Question& of, const TimeOfImpact& toi);
   void look_nearer(const Question& question, TimeOfImpact toi);
   void predict_parting(const Question& question, Due due);
   void leave_overlap(const Question& question);
   /// What a query cost is told.
   TimeOfImpact counted(const TimeOfImpact& toi);
-  TimeOfImpact without_errors(BodyIndex a, BodyIndex b, Instant t, double duration);
-  [[nodiscard]] TimeOfImpact time_of_separation(BodyIndex a, BodyIndex b, Instant t,
-                                                double duration);
+  TimeOfImpact without_errors(const Question& of);
+  [[nodiscard]] TimeOfImpact time_of_separation(const Question& of);
 
   EventRun& run_;
   const EventMotions& motions_;
@@ -100,8 +109,8 @@ class EventPredictor {
   const ContactGraph& graph_;
   std::unique_ptr<Neighbourhood> neighbourhood_;  ///< null: every partner is a neighbour
   std::vector<Watched> bodies_;
-  std::vector<BodyIndex> neighbours_;  ///< scratch, as what follows
-  std::vector<BodyIndex> balls_;
+  std::vector<Neighbour> neighbours_;  ///< scratch, as what follows
+  std::vector<Neighbour> balls_;
   std::vector<BallFlight> flights_;
   std::vector<double> clear_;
   std::vector<Near> near_;

@@ -17,7 +17,11 @@ EventWorld::EventWorld(const Model& model, const Method& method, const SchemeOpt
       contacts_(run_, motions_, predictor_, graph_),
       hands_(run_, motions_, predictor_, contacts_, grasps_),
       clock_(run_.options),
-      drawn_(model.initial_state()) {}
+      drawn_(model.initial_state()) {
+  if (model.scene().periodic) {
+    run_.boxes_on.resize(model.size());
+  }
+}
 
 bool EventWorld::begin() {
   if (!run_.options.resume.empty()) {
@@ -78,7 +82,7 @@ void EventWorld::take(const DueEvent& event) {
     case Due::horizon:
       return predictor_.cross(event.a, event.time);
     case Due::recheck:
-      return predictor_.predict_pair(event.a, event.b, event.time);
+      return predictor_.predict_pair(event.a, event.b, event.image, event.time);
     case Due::impact:
       return contacts_.impact(event.a, event.b, event.time, event.patience, event.decided);
   }
@@ -129,6 +133,9 @@ bool EventWorld::draw() {
   for (BodyIndex i = 0; i < run_.model.size(); ++i) {
     drawn_[i] =
         run_.model.mobility(i) == Mobility::fixed ? motions_.now(i) : motions_.at(i, run_.time);
+    if (!run_.boxes_on.empty()) {
+      drawn_[i].pose.position += run_.way_told(i);
+    }
   }
   run_.account.balance(run_.time, drawn_);
   run_.recorder.stage(Stage::draw, 1.0);
@@ -154,8 +161,8 @@ RunResult EventWorld::result() && {
 
 /// What a run needs to go on, between a frame that was drawn and the next.
 void EventWorld::persist(Archive& archive) {
-  archive(run_.time, run_.epoch_end, clock_, drawn_, grasps_, run_.agenda, run_.budget, run_.ledger,
-          run_.cost, graph_, motions_, predictor_, contacts_);
+  archive(run_.boxes_on, run_.time, run_.epoch_end, clock_, drawn_, grasps_, run_.agenda,
+          run_.budget, run_.ledger, run_.cost, graph_, motions_, predictor_, contacts_);
   run_.recorder.persist(archive);
 }
 

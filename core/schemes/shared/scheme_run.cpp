@@ -59,11 +59,28 @@ BodyInertia SchemeRun::flat_inertia(BodyIndex i) const {
 
 void SchemeRun::note(const Event& event) {
   ++cost.events;
+  if (!boxes_on.empty()) {
+    tell(where_told(event));
+  } else {
+    tell(event);
+  }
+}
+
+void SchemeRun::tell(const Event& event) {
   if (holds_events) {
     held_events.push_back(event);
   } else {
     recorder.event(event);
   }
+}
+
+Event SchemeRun::where_told(Event event) const {
+  event.contact.point += way_told(event.a);
+  event.before_a.pose.position += way_told(event.a);
+  event.after_a.pose.position += way_told(event.a);
+  event.before_b.pose.position += way_told(event.b);
+  event.after_b.pose.position += way_told(event.b);
+  return event;
 }
 
 void SchemeRun::tell_held_events() {

@@ -35,6 +35,11 @@ struct SchemeRun {
                         Vector3& force_b, bool flat = false);
   /// Inertia of body i as an impact sees it that turns nothing but spheres.
   [[nodiscard]] BodyInertia flat_inertia(BodyIndex i) const;
+  /// From where a body is computed to where it is told, m: in a periodic box it is counted on as
+  /// whichever image meets others, and told along its own way, without jumps.
+  [[nodiscard]] Vector3 way_told(BodyIndex i) const {
+    return boxes_on.empty() ? Vector3(Vector3::Zero()) : model.scene().periodic->shift(boxes_on[i]);
+  }
   /// An event at which no state jumps.
   void note(const Event& event);
   /// Events that are found out of order are kept from here on, until they are told in order.
@@ -65,8 +70,13 @@ struct SchemeRun {
   EnergyLedger ledger;
   EnergyAccount account;  ///< keeps the ledger
   Cost cost;
+  std::vector<Image> boxes_on;  ///< by body; empty where no box is periodic
   bool holds_events = false;
   std::vector<Event> held_events;  ///< not told yet
+
+ private:
+  void tell(const Event& event);
+  [[nodiscard]] Event where_told(Event event) const;
 };
 
 }  // namespace core
