@@ -1,6 +1,6 @@
 // What `kairos view` puts into the page, see README.md.
 
-export type ShapeKind = "sphere" | "box" | "half-space" | "capsule" | "cylinder" | "cone" | "hull";
+export type ShapeKind = "sphere" | "box" | "half-space" | "capsule" | "cylinder" | "cone" | "hull" | "mesh" | "compound";
 
 /** Body frame, m. */
 export interface Shape {
@@ -15,6 +15,17 @@ export interface Shape {
   /** Of a hull: how far its surface is from that of its points; coordinates, three a point. */
   rounding?: number;
   points?: number[];
+  /** Of a mesh: three of its points each. */
+  triangles?: number[];
+  /** Of a compound. */
+  parts?: Part[];
+}
+
+/** A convex part, and where it is in its body. */
+export interface Part {
+  shape: Shape;
+  place: Vector;
+  turn: Vector & { w: number };
 }
 
 export interface Vector {
@@ -137,8 +148,13 @@ export function fromBase64(text: string): ArrayBuffer {
   return bytes.buffer;
 }
 
-/** Points are written as members 0, 1, 2, ... */
-const withPoints = (shape: Shape): Shape => (shape.points ? { ...shape, points: Object.values(shape.points) } : shape);
+/** Lists are written as members 0, 1, 2, ... */
+const withPoints = (shape: Shape): Shape => ({
+  ...shape,
+  ...(shape.points && { points: Object.values(shape.points) }),
+  ...(shape.triangles && { triangles: Object.values(shape.triangles) }),
+  ...(shape.parts && { parts: Object.values(shape.parts).map((part) => ({ ...part, shape: withPoints(part.shape) })) }),
+});
 
 /** A run from its names and texts, and the block of its numbers. */
 export function readRun(text: RunText, buffer: ArrayBuffer): Run {

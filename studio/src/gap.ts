@@ -1,6 +1,6 @@
 // Signed gaps between shapes: m, negative inside.
 import { convexGap, marginOf, support } from "./convex";
-import type { Shape } from "./data";
+import type { Part, Shape } from "./data";
 import type { State } from "./motion";
 
 /** Columns of the rotation of a unit quaternion. */
@@ -100,8 +100,27 @@ function boxBox(a: Shape, sa: State, b: Shape, sb: State): number {
   return widest;
 }
 
-/** The gap between two shapes; two half-spaces have none. */
+/** Where a part of a body is, whose own place is `at`. */
+function placed({ place, turn }: Part, at: State): State {
+  axes(at, A);
+  const { qw: w, qx: x, qy: y, qz: z } = at;
+  return {
+    ...at,
+    px: at.px + A[0] * place.x + A[3] * place.y + A[6] * place.z,
+    py: at.py + A[1] * place.x + A[4] * place.y + A[7] * place.z,
+    pz: at.pz + A[2] * place.x + A[5] * place.y + A[8] * place.z,
+    qw: w * turn.w - x * turn.x - y * turn.y - z * turn.z,
+    qx: w * turn.x + x * turn.w + y * turn.z - z * turn.y,
+    qy: w * turn.y - x * turn.z + y * turn.w + z * turn.x,
+    qz: w * turn.z + x * turn.y - y * turn.x + z * turn.w,
+  };
+}
+
+/** The gap between two shapes; two half-spaces have none, and of a mesh the page knows none. */
 export function gap(a: Shape, sa: State, b: Shape, sb: State): number {
+  if (a.kind === "mesh" || b.kind === "mesh") return Infinity;
+  if (a.parts) return Math.min(...a.parts.map((part) => gap(part.shape, placed(part, sa), b, sb)));
+  if (b.parts) return gap(b, sb, a, sa);
   if (a.kind === "half-space") return b.kind === "half-space" ? Infinity : halfSpaceGap(a, sa, b, sb);
   if (b.kind === "half-space") return halfSpaceGap(b, sb, a, sa);
   if (!simple(a) || !simple(b)) return convexGap(a, sa, b, sb);

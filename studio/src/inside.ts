@@ -42,7 +42,9 @@ void main() {
   gl_FragColor = vec4(mix(colour, vec3(1.0), 0.55 * stripe), 0.92);
 }`;
 
-const kinds = { sphere: 0, box: 1, "half-space": 2, capsule: 3, cylinder: 4, cone: 5, hull: 6 };
+const kinds: Record<string, number> = { sphere: 0, box: 1, "half-space": 2, capsule: 3, cylinder: 4, cone: 5, hull: 6 };
+/** Whether the shader knows the inside of a shape. */
+const told = (shape: Shape) => shape.kind in kinds;
 /** Of a hull, faces that a shader is told; one of more is not hatched. */
 const mostPlanes = 48;
 const noPlanes = Array.from({ length: mostPlanes }, () => new Vector4());
@@ -91,7 +93,7 @@ export class Insides {
   }
 
   add(a: Shape, sa: State, b: Shape, sb: State, origin: Vector3, colour: Color): void {
-    if (this.used + 2 > 2 * this.most) return;
+    if (this.used + 2 > 2 * this.most || !told(a) || !told(b)) return;
     this.place(a, sa, b, sb, origin, colour);
     this.place(b, sb, a, sa, origin, colour);
   }

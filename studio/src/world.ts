@@ -43,7 +43,7 @@ const edges = corners.flatMap((a, i) =>
 /** Ends of the edges of a shape, body frame; of a round one none. */
 function edgesOf(shape: Shape): Vector3[] {
   if (shape.kind === "box") return edges.map((corner) => corner.clone().multiply(new Vector3(shape.x, shape.y, shape.z)));
-  const sharp = shape.kind === "cylinder" || shape.kind === "cone" || (shape.kind === "hull" && !(shape.rounding! > 0));
+  const sharp = shape.kind === "compound" || shape.kind === "cylinder" || shape.kind === "cone" || (shape.kind === "hull" && !(shape.rounding! > 0));
   if (!sharp) return [];
   const position = new EdgesGeometry(solidGeometry(shape, 1), shape.kind === "hull" ? 1 : 40).getAttribute("position");
   const scale = stretch(shape, new Vector3());
@@ -203,7 +203,7 @@ export class World {
       const seeThrough = field || (key.endsWith("fixed") && !round);
       const material = new MeshLambertMaterial({
         vertexColors: geometry.hasAttribute("color"), transparent: seeThrough, opacity: field ? 0.25 : seeThrough ? 0.62 : 1,
-        depthWrite: !field, flatShading: shape.kind === "hull",
+        depthWrite: !field, flatShading: shape.kind === "hull" || shape.kind === "mesh", side: shape.kind === "mesh" ? DoubleSide : FrontSide,
       });
       const mesh = new InstancedMesh(geometry, material, bodies.length);
       mesh.instanceMatrix.setUsage(DynamicDrawUsage);

@@ -207,6 +207,9 @@ test("gaps of shapes are those of geometry", async () => {
     ["a lying cylinder on the floor", cylinder, at(0, 0.2, 0, [0, 0, 1], Math.PI / 2), floor, at(0, 0, 0), 0],
     ["a cone on its base", cone, at(0, 0.5, 0), floor, at(0, 0, 0), 0.25],
     ["a rounded hull in the floor", { ...hull, rounding: 0.05 }, at(0, 0.2, 0), floor, at(0, 0, 0), -0.05],
+    ["a dumbbell on its side and a ball", { kind: "compound", x: 1, y: 1, z: 1, parts: [-1, 1].map((x) => (
+      { shape: { kind: "box", x: 0.2, y: 0.2, z: 0.2 }, place: { x, y: 0, z: 0 }, turn: { w: 1, x: 0, y: 0, z: 0 } })) },
+      at(0, 0, 0, [0, 0, 1], Math.PI / 2), ball, at(0.5, 1, 0), 0.25],
     ["a hull inside a hull", hull, at(0, 0, 0), hull, at(0.15, 0, 0), -0.05],
   ];
   for (const [what, a, sa, b, sb, wanted] of cases) {
@@ -240,6 +243,26 @@ test("shapes of a run: apart at every picture, in touch at every impact, as the 
     const gap = contacts.gapAt(motions, a === 0 ? b : a, t, a === 0 ? a : b);
     assert.ok(Math.abs(gap - run.events.gap[e]) < 1e-8, `event ${e}: ${gap}, not ${run.events.gap[e]}`);
   });
+});
+
+test("meshes are there as triangles, and nothing is said of gaps that are not known", async () => {
+  const { readPage, Motions, Contacts, newState } = await modules(place.path, "data.ts", "motion.ts", "contacts.ts");
+  const file = join(place.path, "meshes.html");
+  await kairos("view", "meshes", "--duration", "0.5", "--out", file);
+  const [run] = await runsOf(readPage, file);
+  assert.deepEqual(run.bodies.map((body) => body.shape.kind), ["mesh", "mesh", "mesh", "sphere", "box"]);
+  for (const { shape } of run.bodies.slice(0, 3)) {
+    assert.ok(shape.triangles.length >= 12 && shape.triangles.length % 3 === 0);
+    assert.ok(shape.triangles.every((k) => k < shape.points.length / 3));
+    const reach = Math.max(...shape.points.filter((_, k) => k % 3 === 0).map(Math.abs));
+    assert.ok(Math.abs(reach - shape.x) <= 1e-9 * shape.x, "the box is that around the points");
+  }
+  const motions = new Motions(run), contacts = new Contacts(run);
+  const states = run.bodies.map(newState);
+  for (let k = 0; k <= 100; ++k) {
+    states.forEach((state, i) => motions.at(i, (run.end * k) / 100, state));
+    assert.deepEqual(contacts.overlaps(states), []);
+  }
 });
 
 test("joints: both sides are at one place all the time; what they hold is not told as an overlap", async () => {
