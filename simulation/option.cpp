@@ -130,7 +130,7 @@ const std::array<Option, 34> table{{
      "frame-jitter",
      OptionKind::number,
      {.lowest = 0.0, .highest = 0.999},
-     "frames last frame * (1 + jitter u), u uniform in [-1, 1]; needs a frame",
+     "frames last frame * (1 + jitter u), u uniform in [-1, 1); needs a frame",
      [](const RunChoice& c) { return jitter_text(c, &JitteredFrames::jitter); },
      [](RunChoice& c, double x, const std::string&) {
        put_jitter(c, "frame_jitter", &JitteredFrames::jitter, x);
@@ -174,7 +174,7 @@ const std::array<Option, 34> table{{
      "threshold",
      OptionKind::number,
      {.lowest = 0.0, .highest = large, .unit = "m"},
-     "largest movement of a substep; 0: half of the smallest extent",
+     "largest movement of a substep; 0: half of the smallest sum of two extents",
      [](const RunChoice& c) { return text_of(c.threshold); },
      [](RunChoice& c, double x, const std::string&) { c.threshold = x; }},
     {"equal_substeps",

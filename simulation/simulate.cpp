@@ -56,7 +56,7 @@ void check_numbers(const RunChoice& choice) {
   require(positive(choice.step.value_or(1.0)), "step", choice.step.value_or(1.0),
           "a finite number > 0 (s)");
   require(not_negative(choice.threshold), "threshold", choice.threshold,
-          "a finite number > 0 (m), or 0: half of the smallest extent");
+          "a finite number > 0 (m), or 0: half of the smallest sum of two extents");
   require(choice.toi_tolerance >= 0.0 && choice.toi_tolerance <= most_tolerance, "tolerance",
           choice.toi_tolerance,
           fmt::format("a number > 0 and <= {} (m), or 0: the detector's default", most_tolerance));

@@ -10,6 +10,8 @@ import re
 
 # Paul Tol's "bright" colours, ordered so that neighbours differ in lightness, too.
 COLOURS = ["#222255", "#EE6677", "#228833", "#AA3377", "#4477AA", "#CC9900", "#66CCEE", "#888888"]
+# Two more, for there are ten schemes.
+SCHEME_COLOURS = COLOURS + ["#8B5A2B", "#000000"]
 MARKERS = ["o", "s", "^", "D", "v", "P", "X", "*", "<", ">", "h", "p"]
 DASHES = ["-", "--", "-.", (0, (1, 1.2)), (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)), (0, (3, 1, 1, 1)),
           (0, (2, 2))]
@@ -17,7 +19,7 @@ DASHES = ["-", "--", "-.", (0, (1, 1.2)), (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)), 
 # In the order of the thesis' own method and its cures; then those that people use.
 SCHEMES = ["original", "geometric", "substepped", "equal substeps", "bisected", "event-driven",
            "moreau-jean", "pgs", "xpbd", "penalty"]
-_SCHEME = {name: (COLOURS[i % 8], MARKERS[i], DASHES[i % 8]) for i, name in enumerate(SCHEMES)}
+_SCHEME = {name: (SCHEME_COLOURS[i], MARKERS[i], DASHES[i % 8]) for i, name in enumerate(SCHEMES)}
 
 # The thesis' own method as a whole: `original` with its own integrator and impact law, filled.
 THESIS = "thesis"

@@ -239,6 +239,7 @@ void quote(const std::vector<RallyMethod>& methods, const std::vector<Sum>& sums
              "fig. 15 with the thesis' boxes", 3);
   interval("passed_literal_interval", "substepped, 0.0275 m");
   data.value("passed_equal", passed("equal substeps, 0.0275 m"), "%", "equal substeps", 3);
+  data.value("passed_bisected", passed("bisected"), "%", "contact located in the substep", 2);
   tell_difference("literal_more", named("substepped, 0.0275 m", methods, sums), original, data);
   tell_difference("coarse_more", named("substepped, 0.055 m", methods, sums), original, data);
   tell_difference("boxes_more", named("substepped, 0.0275 m, boxes", methods, sums),
