@@ -39,6 +39,9 @@ void bench_vfee(std::size_t queries, int rounds);
 /// A gas of so many balls each: impacts a second, queries an impact, memory a ball (scene and model
 /// included; of the largest yet, so counts go up), under cells and, where it ends, a tree.
 void bench_gas(std::vector<std::size_t> counts, int rounds);
+/// Stacks of boxes and chains of links, beside Bullet, ODE and Box2D where they were found: time a
+/// step, and how far off each ends.
+void bench_contact(int rounds);
 /// Meshes at rest: two tori in many placements, touching, distance, tolerance; a tree's time and
 /// size.
 void bench_meshes(int rounds);

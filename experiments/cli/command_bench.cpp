@@ -35,6 +35,10 @@ struct BenchCommand {
       bench_gas(balls, rounds);
       return;
     }
+    if (name == "contact") {
+      bench_contact(rounds);
+      return;
+    }
     if (name == "vfee") {
       bench_vfee(pairs, rounds);
       return;
@@ -63,12 +67,11 @@ void add_bench_command(CLI::App& app) {
   CLI::App* bench = app.add_subcommand(
       "bench", "Time it: ratios within one run, interleaved, the least of several rounds");
   bench
-      ->add_option(
-          "name", options->name,
-          "bounce, ccd, vfee, meshes, bats or gas: times; without it the first two; accuracy: "
-          "answers against a "
-          "reference")
-      ->check(CLI::IsMember({"bounce", "ccd", "vfee", "meshes", "bats", "gas", "accuracy"}));
+      ->add_option("name", options->name,
+                   "bounce, ccd, contact, vfee, meshes, bats or gas: times; without it the first "
+                   "two; accuracy: answers against a reference")
+      ->check(
+          CLI::IsMember({"bounce", "ccd", "contact", "vfee", "meshes", "bats", "gas", "accuracy"}));
   bench->add_option("--rounds", options->rounds, "how often each is timed")
       ->check(whole_number(1, 1000))
       ->capture_default_str();
