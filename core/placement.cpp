@@ -22,6 +22,12 @@ Vector3 room(const Region& region, double radius) {
   return region.highest - region.lowest - Vector3::Constant(2.0 * radius);
 }
 
+/// Where sums that were rounded may have left the region, the nearest centre within it.
+Vector3 within(const Region& region, double radius, const Vector3& centre) {
+  const Vector3 margin = Vector3::Constant(radius);
+  return centre.cwiseMax(region.lowest + margin).cwiseMin(region.highest - margin);
+}
+
 /// Sites of a face-centred cubic lattice whose cubes have the side 2 s: of the points s (i, j, k)
 /// those with an even sum. Neighbours are s sqrt(2) apart.
 struct Lattice {
@@ -152,8 +158,9 @@ std::vector<Vector3> lattice_sites(const Region& region, double radius, std::siz
       for (std::size_t k = (i + j) % 2; k < nz; k += 2, ++site) {
         // The m-th body is on site m sites / count, rounded down.
         if (centres.size() < count && site >= centres.size() * sites / count) {
-          centres.push_back(corner + low * Vector3(static_cast<double>(i), static_cast<double>(j),
-                                                   static_cast<double>(k)));
+          const Vector3 steps(static_cast<double>(i), static_cast<double>(j),
+                              static_cast<double>(k));
+          centres.push_back(within(region, radius, corner + low * steps));
         }
       }
     }
@@ -178,7 +185,8 @@ RandomSites random_sites(const Region& region, std::span<const double> radii, st
     bool found = false;
     for (int draw = 0; draw < most_draws && !found && (size.array() >= 0.0).all(); ++draw) {
       const Vector3 part(random.uniform(), random.uniform(), random.uniform());
-      const Vector3 centre = region.lowest + Vector3::Constant(radii[i]) + size.cwiseProduct(part);
+      const Vector3 centre = within(
+          region, radii[i], region.lowest + Vector3::Constant(radii[i]) + size.cwiseProduct(part));
       found = cells.all_near(centre, [&](std::size_t b) {
         const double reach = (radii[i] + radii[b]) * apart;
         return (sites.centres[b] - centre).squaredNorm() > reach * reach;

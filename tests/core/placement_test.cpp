@@ -17,9 +17,10 @@ const Region cube{{-1.0, 2.0, 0.0}, {1.0, 4.0, 2.0}};
 void check_apart(const Region& region, const std::vector<Vector3>& centres,
                  const std::vector<double>& radii) {
   for (std::size_t i = 0; i < centres.size(); ++i) {
-    const Vector3 margin = Vector3::Constant(radii[i]) * (1.0 - 1e-12);  // roundings of the sum
-    REQUIRE(((centres[i] - margin).array() >= region.lowest.array()).all());
-    REQUIRE(((centres[i] + margin).array() <= region.highest.array()).all());
+    // Not even by a rounding: a small ball near the origin would start inside a wall.
+    const Vector3 margin = Vector3::Constant(radii[i]);
+    REQUIRE((centres[i].array() >= (region.lowest + margin).array()).all());
+    REQUIRE((centres[i].array() <= (region.highest - margin).array()).all());
     for (std::size_t k = 0; k < i; ++k) {
       REQUIRE((centres[i] - centres[k]).norm() > radii[i] + radii[k]);
     }
