@@ -48,7 +48,7 @@ void check_closed(std::span<const Triangle> triangles) {
   std::sort(back.begin(), back.end());
   const auto twice = std::adjacent_find(there.begin(), there.end());
   if (twice != there.end()) {
-    refuse(fmt::format("the edge from {} to {} is there twice in the same direction", twice->first,
+    refuse(fmt::format("has the edge from {} to {} twice in the same direction", twice->first,
                        twice->second));
   }
   const auto differ = std::mismatch(there.begin(), there.end(), back.begin());

@@ -43,6 +43,8 @@ class BatWatch : public Recorder {
         ball_ = i;
       }
     }
+    held_ = true;  // until the hand opens for the first time
+    seen_ = hit_ = false;
     shape_ = model.body(bat_).shape;
     // A ball that touches is not inside.
     ball_shape_ = Sphere{std::get<Sphere>(model.body(ball_).shape).radius * (1.0 - 1e-9)};
