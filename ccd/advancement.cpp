@@ -110,7 +110,7 @@ class Advancement {
     if (!(tolerance_ > 0.0)) {
       tolerance_ = default_tolerance(a_, b_, window_);
     }
-    bounds_ = motion_.bounds(clear, motion_.duration() - clear);
+    bound_from(clear, motion_.duration() - clear);
     Look at = look(clear);
     if (clear == 0.0 && at.within(1.0)) {
       if (const auto answer = leave_touch(at)) {
@@ -203,8 +203,18 @@ class Advancement {
     if (long_piece || t >= bounds_.until) {
       const double remaining = motion_.duration() - t;
       const double piece = last_step_ > 0.0 ? std::min(remaining, 4.0 * last_step_) : remaining;
-      bounds_ = motion_.bounds(t, piece);
+      bound_from(t, piece);
+    } else if (t > bounded_at_ && !bounds_used_again_) {
+      // How far d is bent from what it was there, and that from what it is here.
+      bounds_.bend *= 2.0;
+      bounds_used_again_ = true;
     }
+  }
+
+  void bound_from(double t, double piece) {
+    bounds_ = motion_.bounds(t, piece);
+    bounded_at_ = t;
+    bounds_used_again_ = false;
   }
 
   /// The end of a step that is proven free of contact: exactly where the bounds end, if it gets
@@ -470,7 +480,9 @@ class Advancement {
   double tolerance_;
   PairKind kind_;
   PairMotion motion_;
-  TurnBounds bounds_;       ///< of what is ahead
+  TurnBounds bounds_;        ///< of what is ahead
+  double bounded_at_ = 0.0;  ///< when they were made, s
+  bool bounds_used_again_ = false;
   double last_step_ = 0.0;  ///< s
   int evaluations_ = 0;
 };
