@@ -180,7 +180,8 @@ constexpr Headline headlines[] = {
      "Where impacts are not located every integrator is of order 1; on the dense output each keeps "
      "the order it was built with."},
     {"tradeoff",
-     "Once a frame, sixteen times the frames buy one digit or two, whatever the integrator; from impact "
+     "Once a frame, sixteen times the frames buy one digit or two, whatever the integrator; from "
+     "impact "
      "to impact the same work is a thousand times nearer."},
     {"contact-truths",
      "Blocks, balls, stacks and joints in contact that lasts: from event to event a run gives the "
@@ -323,7 +324,8 @@ Report write_report(const std::string& folder) {
   const std::string size = entries.front().entry("size") == "full" ? "Full" : "Quick";
   const std::string footer = fmt::format(
       "{} size. {}. Every number of this report comes from the linked tables; the same commands on "
-      "the same machine and toolchain give the same bytes (timings, and the date in rendered pictures, apart).",
+      "the same machine and toolchain give the same bytes (timings, and the date in rendered "
+      "pictures, apart).",
       size, versions_html(entries.front()));
   write_site(folder, pages.all(), {style_sheet(), footer});
   return {(fs::path(folder) / "index.html").string(), pages.holes()};

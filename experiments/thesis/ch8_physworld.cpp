@@ -171,7 +171,8 @@ ThesisFigure physworld() {
       .how =
           "scenes/physworld.def, of which the thesis keeps the pad's five lines; all other "
           "values were found by kairos physworld, such that the nine frames of {moments} moments "
-          "that the captions tell come in order under both schemes. Left the original scheme, right "
+          "that the captions tell come in order under both schemes. Left the original scheme, "
+          "right "
           "event-driven with the thesis' impact law; each frame just after the collision that its "
           "caption tells, in each run. What else a caption tells comes at its own time, added "
           "in brackets (original).",
