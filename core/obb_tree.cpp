@@ -166,13 +166,13 @@ class Builder {
 
   /// Puts the triangles of the first child in front; returns how many they are. The middles are cut
   /// at their mean across the longest axis where it parts them; at their median where a branch
-  /// becomes long.
+  /// becomes long. In an order that no library is free to choose: the same tree everywhere.
   std::size_t divide(std::span<std::uint32_t> triangles, const ObbNode& node, int depth) const {
     constexpr int mean_until = 64;
     const ObbBox box = box_of(node);
     std::array<int, 3> by_length{0, 1, 2};
-    std::sort(by_length.begin(), by_length.end(),
-              [&](int i, int j) { return box.half_extents[i] > box.half_extents[j]; });
+    std::stable_sort(by_length.begin(), by_length.end(),
+                     [&](int i, int j) { return box.half_extents[i] > box.half_extents[j]; });
     if (depth < mean_until) {
       for (const int k : by_length) {
         const Vector3 axis = box.axes.col(k);
@@ -180,9 +180,9 @@ class Builder {
         for (const std::uint32_t t : triangles) {
           mean += axis.dot(middles_[t] - box.centre) / static_cast<double>(triangles.size());
         }
-        const auto cut = std::partition(triangles.begin(), triangles.end(), [&](std::uint32_t t) {
-          return axis.dot(middles_[t] - box.centre) <= mean;
-        });
+        const auto cut = std::stable_partition(
+            triangles.begin(), triangles.end(),
+            [&](std::uint32_t t) { return axis.dot(middles_[t] - box.centre) <= mean; });
         if (cut != triangles.begin() && cut != triangles.end()) {
           return static_cast<std::size_t>(cut - triangles.begin());
         }
@@ -190,10 +190,9 @@ class Builder {
     }
     const Vector3 axis = box.axes.col(by_length[0]);
     const std::size_t half = triangles.size() / 2;
-    std::nth_element(triangles.begin(), triangles.begin() + static_cast<std::ptrdiff_t>(half),
-                     triangles.end(), [&](std::uint32_t s, std::uint32_t t) {
-                       return axis.dot(middles_[s]) < axis.dot(middles_[t]);
-                     });
+    std::stable_sort(triangles.begin(), triangles.end(), [&](std::uint32_t s, std::uint32_t t) {
+      return axis.dot(middles_[s]) < axis.dot(middles_[t]);
+    });
     return half;
   }
 
