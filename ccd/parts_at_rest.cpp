@@ -109,7 +109,10 @@ class Pair {
     double lower;
     ObbChild a, b;
   };
-  static bool later(const Key& x, const Key& y) { return x.lower > y.lower; }
+  /// Of equals, too, one comes first: a heap of another library would take another.
+  static bool later(const Key& x, const Key& y) {
+    return std::tuple(x.lower, x.a, x.b) > std::tuple(y.lower, y.a, y.b);
+  }
   static bool is_part(ObbChild a, ObbChild b) { return a.is_triangle() && b.is_triangle(); }
 
   template <typename Visit>

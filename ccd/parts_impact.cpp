@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 namespace kairos::ccd {
@@ -89,7 +90,10 @@ class PartsImpact {
     double t;
     ObbChild a, b;
   };
-  static bool later(const Key& x, const Key& y) { return x.t > y.t; }
+  /// Of equals, too, one comes first: a heap of another library would take another.
+  static bool later(const Key& x, const Key& y) {
+    return std::tuple(x.t, x.a, x.b) > std::tuple(y.t, y.a, y.b);
+  }
   void push(const Key& key) {
     if (key.t < end_) {
       keys_.push_back(key);

@@ -3,6 +3,7 @@
 #include "core/mesh_data.hpp"
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <vector>
 
@@ -17,6 +18,8 @@ class ObbChild {
   [[nodiscard]] static ObbChild triangle(std::uint32_t i) { return ObbChild(i | leaf_bit); }
   [[nodiscard]] bool is_triangle() const { return (code_ & leaf_bit) != 0; }
   [[nodiscard]] std::uint32_t index() const { return code_ & ~leaf_bit; }
+  /// Any order that is the same everywhere.
+  friend auto operator<=>(const ObbChild&, const ObbChild&) = default;
 
  private:
   static constexpr std::uint32_t leaf_bit = 1U << 31U;
