@@ -5,6 +5,7 @@
 #include "core/circular.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -212,6 +213,7 @@ double highest(const FacePolygon& face, const Vector3& n) {
 }  // namespace
 
 Vector3 FacePolygon::centroid() const {
+  assert(size > 0);
   Vector3 area = Vector3::Zero();
   double longest = 0.0;
   Vector3 middle = points[0];

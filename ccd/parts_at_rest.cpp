@@ -9,6 +9,7 @@
 #include "ccd/rounding/roundoff.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 namespace kairos::ccd {
 namespace {
@@ -336,7 +337,8 @@ Vector3 touching_point(const Shape& a, const Pose& pose_a, const Shape& b, const
                        const Vector3& n, double gap, double within) {
   if (on_plane(b)) {
     const OverPlane over(a, pose_a, b, pose_b);
-    return pose_a.position + middle(outline(over.points(gap + within), n, over.size()));
+    const double most = std::max(gap, over.gap()) + within;  // never without the lowest
+    return pose_a.position + middle(outline(over.points(most), n, over.size()));
   }
   Pair pair(a, pose_a, b, pose_b);
   std::vector<TouchingPoint> points = pair.points(n, gap, gap + within);

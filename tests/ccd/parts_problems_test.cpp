@@ -1,6 +1,7 @@
 // Problems about meshes and compounds whose answers are known.
 
 #include "ccd/certified.hpp"
+#include "ccd/parts_at_rest.hpp"
 #include "core/compound_body.hpp"
 #include "core/mesh_body.hpp"
 #include "core/mesh_shapes.hpp"
@@ -58,6 +59,25 @@ MeshData together(MeshData a, const MeshData& b) {
 Pose at(const Vector3& position) { return {position, Quaternion::Identity()}; }
 
 }  // namespace
+
+TEST_CASE("parts touch where they are lowest, though their gap was told too small", "[parts]") {
+  const Quaternion tilted =
+      Eigen::AngleAxisd(0.5, Vector3::UnitX()) * Eigen::AngleAxisd(0.3, Vector3::UnitZ());
+  const MeshData data = box_mesh({0.1, 0.2, 0.3});
+  const Shape box = Mesh{solid_body(data).body};
+  Vector3 corner = Vector3::Zero();
+  for (const Vector3& v : data.vertices) {
+    const Vector3 turned = tilted * v;
+    corner = turned.y() < corner.y() ? turned : corner;
+  }
+  for (const double height : {0.5, 1e-12}) {
+    const Pose pose{{1.0, height - corner.y(), 2.0}, tilted};
+    const Vector3 point =
+        ccd::touching_point(box, pose, HalfSpace{}, {}, -Vector3::UnitY(), 0.0, 1e-15);
+    // Halfway between the corner and the plane; roundoff of three rotations.
+    CHECK((point - (pose.position + corner - 0.5 * height * Vector3::UnitY())).norm() < 1e-15);
+  }
+}
 
 TEST_CASE("16: a dumbbell that turns onto a plane", "[parts]") {
   // Balls of radius .1 at 0.5 from the middle, which stays at .35: 0.5 sin(3 t) = .25.

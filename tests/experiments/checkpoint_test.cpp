@@ -12,6 +12,7 @@
 #include "tests/experiments/program.hpp"
 
 #include <string>
+#include <tuple>
 #include <vector>
 
 using namespace kairos;
