@@ -49,6 +49,7 @@ class RunGuard : public Recorder {
   const bool watch_spin_;
   const Model* model_ = nullptr;
   std::vector<char> free_top_;       ///< turns, and no force involves that
+  std::vector<int> touching_;        ///< how many contacts hold a body
   std::vector<double> most_energy_;  ///< J, since the last impact; infinite: not known yet
   RunResult last_;
 };
