@@ -30,7 +30,6 @@ void RunGuard::begin(const Model& model) {
   model_ = &model;
   free_top_.assign(model.size(), 0);
   most_energy_.assign(model.size(), unknown);
-  touching_.assign(model.size(), 0);
   for (BodyIndex i = 0; i < model.size(); ++i) {
     free_top_[i] = watch_spin_ && model.is_free(i) && model.rotates(i) && !model.jointed(i) ? 1 : 0;
   }
@@ -63,10 +62,8 @@ void RunGuard::event(const Event& event) {
   check_spin(event.before_b, event.b, event.time);
   check_finite(event.after_a, event.a, event.time);
   check_finite(event.after_b, event.b, event.time);
-  if (event.kind == EventKind::contact_begins || event.kind == EventKind::contact_ends) {
-    for (const BodyIndex i : {event.a, event.b}) {
-      touching_[i] += event.kind == EventKind::contact_begins ? 1 : -1;
-    }
+  if (event.kind == EventKind::contact_begins) {  // contact may turn them from now on
+    free_top_[event.a] = free_top_[event.b] = 0;
   }
   most_energy_[event.a] = most_spin_energy(event.after_a, event.a);
   most_energy_[event.b] = most_spin_energy(event.after_b, event.b);
@@ -75,7 +72,7 @@ void RunGuard::event(const Event& event) {
 }
 
 bool RunGuard::persist(Archive& archive) {
-  archive(last_.end, last_.state, last_.ledger, last_.cost, most_energy_, touching_);
+  archive(last_.end, last_.state, last_.ledger, last_.cost, most_energy_, free_top_);
   archive.require(last_.state.size() == model_->size());
   return inner_.persist(archive);
 }
@@ -136,10 +133,6 @@ double RunGuard::most_spin_energy(const BodyState& body, BodyIndex i) const {
 
 void RunGuard::check_spin(const BodyState& body, BodyIndex i, Instant t) {
   if (free_top_[i] == 0) {
-    return;
-  }
-  if (touching_[i] > 0) {  // contact turns it
-    most_energy_[i] = unknown;
     return;
   }
   if (most_energy_[i] == unknown) {

@@ -25,6 +25,7 @@ struct Patch {
   Slip slip = Slip::none;             ///< what both do along each other
   bool turns = false;                 ///< they turn while they touch
   double step = 0.0;                  ///< s; how long the next step may be; 0: not known
+  int short_steps = 0;                ///< in a row, of bodies that turn
 
   void persist(Archive& archive);
 };

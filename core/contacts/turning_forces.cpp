@@ -1,5 +1,6 @@
 #include "core/contacts/turning_forces.hpp"
 
+#include "core/circular.hpp"
 #include "core/contacts/nonnegative_solve.hpp"
 
 #include <Eigen/Geometry>
@@ -189,7 +190,7 @@ double TurningForces::nearest_in_cones(std::span<const FrictionChoice> choices, 
     }
     for (int j = 0; j < rays_of_cone; ++j) {
       const double angle = 2.0 * M_PI * j / rays_of_cone;
-      const Vector3 along = std::cos(angle) * t1 + std::sin(angle) * t2;
+      const Vector3 along = cosine(angle) * t1 + sine(angle) * t2;
       rays.push_back(line(k, std::isinf(mu) ? along : Vector3(n + mu * along)));
     }
   }
@@ -266,7 +267,7 @@ void TurningForces::sweep(std::size_t k, const FrictionChoice& as_is, std::array
       const Line& t = lines_[k][axis];
       wanted[axis - 1] = force[axis] - slides.dot(t.direction) / coupling(t, t);
     }
-    const double size = std::hypot(wanted[0], wanted[1]);
+    const double size = hypotenuse(wanted[0], wanted[1]);
     const double most = force[0] > 0.0 ? mu * force[0] : 0.0;
     if (size > most) {
       wanted[0] *= most / size;
@@ -304,7 +305,7 @@ std::vector<FrictionChoice> TurningForces::propose(std::span<const FrictionChoic
   std::vector<FrictionChoice> choices(as_is.begin(), as_is.end());
   for (std::size_t k = 0; k < as_is.size(); ++k) {
     const double mu = state_.touches[k].friction;
-    const double along = std::hypot(force[k][1], force[k][2]);
+    const double along = hypotenuse(force[k][1], force[k][2]);
     if (force[k][0] <= 1e-7 * most) {
       choices[k].does = Does::opens;
     } else if (choices[k].does == Does::sticks && std::isfinite(mu) &&

@@ -1,5 +1,6 @@
 #include "core/contacts/turning_mode.hpp"
 
+#include "core/circular.hpp"
 #include "core/contacts/routh_impact.hpp"
 
 #include <Eigen/Geometry>
@@ -177,7 +178,7 @@ class Search {
                                   double angle) const {
     const Vector3& d = choices[k].direction;
     const Vector3 side = forces_.now()[k].normal.cross(d);
-    return (std::cos(angle) * d + std::sin(angle) * side).normalized();
+    return (cosine(angle) * d + sine(angle) * side).normalized();
   }
 
   /// Of the accelerations of what begins to slide, the part across its direction, of the load.

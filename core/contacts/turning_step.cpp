@@ -1,6 +1,7 @@
 #include "core/contacts/turning_step.hpp"
 
 #include "core/bent_motion.hpp"
+#include "core/circular.hpp"
 #include "core/contacts/separation_watch.hpp"
 
 #include <Eigen/Geometry>
@@ -326,7 +327,7 @@ class Step {
     Eigen::MatrixXd of_pair =
         Eigen::MatrixXd::Zero(nodes, static_cast<Eigen::Index>(group_.pairs.size()));
     for (int j = 0; j < nodes; ++j) {
-      const double u = 0.5 * (1.0 - std::cos(M_PI * (2 * j + 1) / (2.0 * nodes)));
+      const double u = 0.5 * (1.0 - cosine(M_PI * (2 * j + 1) / (2.0 * nodes)));
       for (int k = 0; k < nodes; ++k) {
         powers(j, k) = k == 0 ? 1.0 : powers(j, k - 1) * u;
       }

@@ -228,7 +228,9 @@ bool EventContacts::still_approaching(const Event& event, double approach, Insta
     scale += after->twist.linear.norm() +
              after->twist.angular.norm() * (event.contact.point - after->pose.position).norm();
   }
-  if (!(rebound < -16.0 * epsilon * scale)) {  // roundoff of a product and a few sums
+  // Roundoff of a product and a few sums; with friction, what an impact is integrated to.
+  const double allowed = run_.model.friction(a, b) > 0.0 ? 1e-12 : 16.0 * epsilon;
+  if (!(rebound < -allowed * scale)) {
     return false;
   }
   depart(a, b, t);

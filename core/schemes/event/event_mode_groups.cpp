@@ -228,9 +228,11 @@ bool EventModes::stays(BodyIndex a, BodyIndex b, const Contact& contact) const {
 
 std::optional<EventModes::Approach> EventModes::landing(BodyIndex a, BodyIndex b) const {
   const Patch* const patch = graph_.find(a, b);
-  if (patch == nullptr || !patch->turns) {
-    return std::nullopt;
-  }
+  return patch != nullptr && patch->turns ? fastest_points(a, b) : std::nullopt;
+}
+
+/// The middle of the points that approach fastest.
+std::optional<EventModes::Approach> EventModes::fastest_points(BodyIndex a, BodyIndex b) const {
   const BodyState& at_a = motions_.now(a);
   const BodyState& at_b = motions_.now(b);
   const ContactManifold m =
@@ -280,13 +282,9 @@ std::optional<EventModes::Approach> EventModes::approach(BodyIndex a, BodyIndex 
   Contact contact{o.point, o.normal, o.gap};
   double rate = normal_velocity(contact, at_a, at_b);
   if (rate >= -slow) {
-    for (std::size_t p = 0; p < manifold.size; ++p) {
-      const Contact corner{manifold.points[p].position, manifold.normal, manifold.points[p].gap};
-      const double at_corner = normal_velocity(corner, at_a, at_b);
-      if (at_corner < std::min(rate, -slow)) {
-        contact = corner;
-        rate = at_corner;
-      }
+    if (const std::optional<Approach> corners = fastest_points(a, b);
+        corners && -corners->speed < std::min(rate, -slow)) {
+      return corners;
     }
   }
   return rate < -slow ? std::optional(Approach{a, b, contact, -rate}) : std::nullopt;

@@ -250,7 +250,7 @@ std::vector<EventModes::Change> EventModes::join_and_part(const Gathered& found,
     Patch& patch = graph_.join(a, b);
     patch.manifold = found.group.patches[p].manifold;
     patch.turns = mode.turns;
-    if (!is_new) {
+    if (!is_new && !(mode.turns && !patch.told)) {
       continue;
     }
     const double e = run_.model.restitution(a, b);
@@ -260,7 +260,7 @@ std::vector<EventModes::Change> EventModes::join_and_part(const Gathered& found,
     const double pressing =
         -std::min(n.dot(found.group.loads[pb].linear - mode.accelerations[pa].linear),
                   n.dot(mode.accelerations[pb].linear - found.group.loads[pa].linear));
-    const bool hops = mode.rate[p] > 0.0 && pressing > 0.0 && e < 1.0;
+    const bool hops = !mode.turns && mode.rate[p] > 0.0 && pressing > 0.0 && e < 1.0;
     const double still = hops ? 2.0 * mode.rate[p] / (pressing * (1.0 - e)) : 0.0;
     patch.begins = t + still;
     if (still > 0.0 && patch.begins < Instant::never()) {

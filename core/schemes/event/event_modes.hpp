@@ -112,6 +112,7 @@ class EventModes {
   [[nodiscard]] double rest_speed(BodyIndex a, BodyIndex b, const BodyState& at_a,
                                   const BodyState& at_b, const Wish& wish) const;
   [[nodiscard]] std::optional<Approach> approach(BodyIndex a, BodyIndex b) const;
+  [[nodiscard]] std::optional<Approach> fastest_points(BodyIndex a, BodyIndex b) const;
   [[nodiscard]] Twist load(BodyIndex i, const BodyState& state) const;
   /// One body on one surface, along a motion that is no parabola.
   struct Alone {
@@ -129,6 +130,8 @@ class EventModes {
   [[nodiscard]] static bool presses(const Gathered& found, const Turning& turning,
                                     const BodyPair& pair);
   [[nodiscard]] double next_step(const Gathered& found);
+  [[nodiscard]] bool creeps(const Gathered& found);
+  [[nodiscard]] bool turned(std::span<const BodyIndex> bodies);
   void lift(Gathered& found, Turning& turning);
   void raise(Gathered& found, Turning& turning);
   [[nodiscard]] bool fly(const Gathered& found, const Turning& turning, Instant t,

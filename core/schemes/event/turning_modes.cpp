@@ -19,6 +19,9 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double least_gap = 1.0 / 16.0;
 /// Infinite friction: as this, so that what is hardly pressed any more may slide.
 constexpr double rough = 1e6;
+/// Steps that are shorter than this part of a frame, so many in a row, get nowhere.
+constexpr double short_step = 1e-4;
+constexpr int most_short_steps = 5000;
 
 }  // namespace
 
@@ -52,13 +55,8 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
   lift(found, turning);
   if (turning.group.start.touches.empty()) {
     why_not_ = flat;
-    const bool turned = std::any_of(seeds.begin(), seeds.end(), [&](BodyIndex i) {
-      const auto& partners = graph_.partners(i);
-      return std::any_of(partners.begin(), partners.end(),
-                         [&](BodyIndex j) { return graph_.find(i, j)->turns; });
-    });
     turning.mode.velocities = found.group.velocities;
-    return turned && !asked.pressed && !asked.unloaded && fly(found, turning, t, adopt);
+    return turned(seeds) && !asked.pressed && !asked.unloaded && fly(found, turning, t, adopt);
   }
   double fastest = 0.0;
   for (std::size_t k = 0; k < found.bodies.size(); ++k) {
@@ -74,13 +72,22 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
   }
   if (turning.mode.flies) {
     why_not_ = "nothing presses";
-    return !asked.pressed && !asked.unloaded && fly(found, turning, t, adopt);
+    return turned(seeds) && !asked.pressed && !asked.unloaded && fly(found, turning, t, adopt);
+  }
+  const auto& forces = turning.mode.forces.force;
+  if (std::all_of(forces.begin(), forces.end(), [](const Vector3& f) { return f.isZero(0.0); })) {
+    why_not_ = "nothing presses";
+    return false;
   }
   if (asked.pressed && !presses(found, turning, *asked.pressed)) {
     why_not_ = "nothing presses";
     return false;
   }
   const double frame = run_.options.step > 0.0 ? run_.options.step : run_.mean_frame;
+  if (creeps(found)) {
+    why_not_ = "what begins to slide, or stops, turns its direction faster than steps can follow";
+    return false;
+  }
   const double longest = std::min({frame, run_.epoch_end - t, next_step(found)});
   const std::unique_ptr<Stepper> stepper = stepper_(longest);
   turning.step = turning_step(turning.group, turning.mode, *stepper, t, longest);
@@ -95,6 +102,23 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
   run_.cost.right_hand_sides += turning.step.evaluations;
   carry_on(found, turning, t, adopt);
   return true;
+}
+
+/// Whether some of these have turned while they touch.
+bool EventModes::turned(std::span<const BodyIndex> bodies) {
+  return std::any_of(bodies.begin(), bodies.end(), [&](BodyIndex i) {
+    const auto& partners = graph_.partners(i);
+    return std::any_of(partners.begin(), partners.end(),
+                       [&](BodyIndex j) { return graph_.find(i, j)->turns; });
+  });
+}
+
+/// Whether the steps of a group get nowhere.
+bool EventModes::creeps(const Gathered& found) {
+  return std::any_of(found.pairs.begin(), found.pairs.end(), [&](const BodyPair& pair) {
+    const Patch* const patch = graph_.find(pair.first, pair.second);
+    return patch != nullptr && patch->short_steps > most_short_steps;
+  });
 }
 
 /// How long the next step of a group may be, as its last ones tell, s.
@@ -280,6 +304,7 @@ void EventModes::carry_on(const Gathered& found, const Turning& turning, Instant
   for (const auto& [a, b] : found.pairs) {
     if (Patch* const patch = graph_.find(a, b)) {
       const double tried = turning.step.stepped;
+      patch->short_steps = tried < short_step * run_.mean_frame ? patch->short_steps + 1 : 0;
       patch->step = turning.step.halved ? tried : std::max(patch->step, 2.0 * tried);
     }
   }
