@@ -59,13 +59,14 @@ Vector3 direction(const TouchNow& now, const Vector3& before, double slow) {
   return (d - now.normal * now.normal.dot(d)).normalized();
 }
 
-/// Slower than this, m/s, what slides goes on as it did.
-double slow_slip(const TurningMode& mode) {
-  double fastest = 0.0;
-  for (const Twist& v : mode.velocities) {
-    fastest = std::max(fastest, v.linear.norm());
+/// Slower than this, m/s, what slides goes on as it did: a small part of what a body gains that
+/// falls by its size. Directions of slower sliding change faster than steps can follow.
+double slow_slip(const TurningGroup& group) {
+  double size = 0.0;
+  for (std::size_t i = 0; i < group.bodies.size(); ++i) {
+    size = std::max(size, group.inertia[i].mass > 0.0 ? group.start.radius[i] : 0.0);
   }
-  return 1e-8 * std::max(fastest, 1e-3);
+  return 1e-5 * std::sqrt(TurningForces(group.start).load() * size);
 }
 
 std::vector<FrictionChoice> directed(const TurningMode& mode, const std::vector<TouchNow>& now,
@@ -84,7 +85,7 @@ std::vector<FrictionChoice> directed(const TurningMode& mode, const std::vector<
 class ContactForce final : public Force {
  public:
   ContactForce(const TurningGroup& group, const TurningMode& mode)
-      : group_(group), mode_(mode), slow_(slow_slip(mode)) {}
+      : group_(group), mode_(mode), slow_(slow_slip(group)) {}
 
   void add(Instant, std::span<const BodyState> bodies, std::span<Wrench> wrenches) const override {
     const TurningState state = at_states(group_, bodies);
@@ -126,7 +127,7 @@ class ContactForce final : public Force {
 class Step {
  public:
   Step(const TurningGroup& group, const TurningMode& mode, Stepper& stepper, Instant t)
-      : group_(group), mode_(mode), stepper_(stepper), t_(t), slow_(slow_slip(mode)) {
+      : group_(group), mode_(mode), stepper_(stepper), t_(t), slow_(slow_slip(group)) {
     for (std::size_t i = 0; i < group.bodies.size(); ++i) {
       if (group.inertia[i].mass > 0.0) {
         free_.push_back(i);
@@ -263,7 +264,7 @@ class Step {
   /// Whether what slides, slides back.
   [[nodiscard]] bool stops(const FrictionChoice& c, const TouchNow& now) const {
     return (c.does == Does::slides || c.does == Does::begins) && !c.direction.isZero(0.0) &&
-           c.direction.dot(now.velocity) < -1e-5 * slow_;
+           c.direction.dot(now.velocity) < -1e-6 * slow_;
   }
 
   [[nodiscard]] bool rim(const TurningState&, const TurningForces&) const { return false; }
