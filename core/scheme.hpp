@@ -32,6 +32,9 @@ struct Method {
   BroadPhaseFactory broad_phase;
   SweptBounds swept_bounds;                 ///< what a broad phase is told
   NeighbourhoodFactory neighbourhood = {};  ///< the same where each body has a time of its own
+  /// Moves bodies that turn while they touch, whatever moves the others; empty: nothing does. Told
+  /// is how long its first step may be expected to be, s.
+  std::function<std::unique_ptr<Stepper>(double first_step)> contact_stepper = {};
 };
 
 struct SchemeOptions {

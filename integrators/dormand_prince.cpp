@@ -34,7 +34,9 @@ constexpr std::array<double, stages> dense_weights{
 
 class DormandPrince final : public OdeStepper {
  public:
-  explicit DormandPrince(const StepperOptions& options) : OdeStepper(2), control_(options, 5) {}
+  /// `first_step`: 0: not known.
+  explicit DormandPrince(const StepperOptions& options, double first_step = 0.0)
+      : OdeStepper(2), control_(options, 5), first_step_(first_step) {}
   [[nodiscard]] StepperInfo info() const override { return dopri5_info; }
 
   void start(const Island& island, Instant t, std::span<const BodyState> states) override {
@@ -48,6 +50,7 @@ class DormandPrince final : public OdeStepper {
     }
     stage_.assign(ode_.size(), 0.0);
     control_.forget();
+    control_.propose(first_step_);
     h_ = 0.0;
   }
 
@@ -158,6 +161,7 @@ class DormandPrince final : public OdeStepper {
   }
 
   StepControl control_;
+  double first_step_;  ///< s
   std::array<std::vector<double>, stages> k_;
   std::vector<double> stage_;
   std::vector<char> rotates_;
@@ -168,6 +172,10 @@ class DormandPrince final : public OdeStepper {
 
 std::unique_ptr<Stepper> make_dopri5(const StepperOptions& options) {
   return std::make_unique<DormandPrince>(options);
+}
+
+std::unique_ptr<Stepper> make_dopri5(const StepperOptions& options, double first_step) {
+  return std::make_unique<DormandPrince>(options, first_step);
 }
 
 }  // namespace kairos::integrators

@@ -20,5 +20,8 @@ inline constexpr StepperInfo dopri5_info{.name = "dopri5",
                                          .source = "Dormand1980"};
 
 [[nodiscard]] std::unique_ptr<Stepper> make_dopri5(const StepperOptions& options);
+/// The same for who knows about how long, s, its first step may be.
+[[nodiscard]] std::unique_ptr<Stepper> make_dopri5(const StepperOptions& options,
+                                                   double first_step);
 
 }  // namespace kairos::integrators

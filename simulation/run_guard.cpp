@@ -62,6 +62,9 @@ void RunGuard::event(const Event& event) {
   check_spin(event.before_b, event.b, event.time);
   check_finite(event.after_a, event.a, event.time);
   check_finite(event.after_b, event.b, event.time);
+  if (event.kind == EventKind::contact_begins) {  // contact may turn them from now on
+    free_top_[event.a] = free_top_[event.b] = 0;
+  }
   most_energy_[event.a] = most_spin_energy(event.after_a, event.a);
   most_energy_[event.b] = most_spin_energy(event.after_b, event.b);
   ++last_.cost.events;
@@ -69,7 +72,7 @@ void RunGuard::event(const Event& event) {
 }
 
 bool RunGuard::persist(Archive& archive) {
-  archive(last_.end, last_.state, last_.ledger, last_.cost, most_energy_);
+  archive(last_.end, last_.state, last_.ledger, last_.cost, most_energy_, free_top_);
   archive.require(last_.state.size() == model_->size());
   return inner_.persist(archive);
 }

@@ -48,7 +48,7 @@ class RunGuard : public Recorder {
   Recorder& inner_;
   const bool watch_spin_;
   const Model* model_ = nullptr;
-  std::vector<char> free_top_;       ///< turns, and no force involves that
+  std::vector<char> free_top_;       ///< turns, and neither force nor contact involves that
   std::vector<double> most_energy_;  ///< J, since the last impact; infinite: not known yet
   RunResult last_;
 };

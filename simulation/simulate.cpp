@@ -4,6 +4,7 @@
 #include "core/error.hpp"
 #include "core/joints/constrained_stepper.hpp"
 #include "core/schemes/shared/journaled_stepper.hpp"
+#include "integrators/dormand_prince.hpp"
 #include "simulation/cold_restarts.hpp"
 #include "simulation/model_gaps.hpp"
 #include "simulation/penetration.hpp"
@@ -28,6 +29,9 @@ constexpr double most_tolerance = 1e12;
 /// How many steps, each as far off the joints as its tolerance, a multistep method goes on from
 /// states that are not put back: begun anew, it starts at order 1.
 constexpr double steps_of_drift = 100.0;
+
+/// Of the integrator of bodies that turn while they touch: it shows in gaps of 1e-10 of their size.
+constexpr StepperOptions tight{1e-12, 1e-13};
 
 /// The names of a choice, resolved.
 struct Plan {
@@ -107,6 +111,9 @@ Plan make_plan(const Model& model, const RunChoice& choice, const PlugIns& own) 
   plan.method.stepper = [make = plan.method.stepper, most_drift](const Model& of,
                                                                  std::size_t island) {
     return make_constrained(make(of, island), of.islands()[island], most_drift);
+  };
+  plan.method.contact_stepper = [](double first_step) {
+    return integrators::make_dopri5(tight, first_step);
   };
   const double frame = mean_frame_duration(plan.options.frames);
   require(positive(frame), "frame", frame, "a finite number > 0 (s)");

@@ -43,7 +43,7 @@ void ContactGraph::part(BodyIndex i, BodyIndex j) {
 
 void Patch::persist(Archive& archive) {
   archive(a, b, manifold.normal, manifold.size, manifold.face_of_a, manifold.face_of_b, begins,
-          told, slip);
+          told, slip, turns, step, short_steps);
   archive.require(manifold.size <= ContactManifold::most_points);
   for (ContactManifold::Point& point : manifold.points) {
     archive(point.position, point.gap);

@@ -23,6 +23,9 @@ struct Patch {
   Instant begins = Instant::never();  ///< when its bounces have died down
   bool told = false;                  ///< that contact has begun
   Slip slip = Slip::none;             ///< what both do along each other
+  bool turns = false;                 ///< they turn while they touch
+  double step = 0.0;                  ///< s; how long the next step may be; 0: not known
+  int short_steps = 0;                ///< in a row, of bodies that turn
 
   void persist(Archive& archive);
 };

@@ -54,6 +54,7 @@ struct FlatMode {
   std::vector<Vector3> force;     ///< by patch, where there is friction: on b, N
   std::vector<double> slip_ends;  ///< by patch, where there is friction: when it stops sliding, s
   bool curved = false;            ///< refused for what slides on no line, and for nothing else
+  bool turns = false;             ///< bodies turn while they touch: see `TurningMode`
   int solves = 0;
 };
 

@@ -223,7 +223,7 @@ TEST_CASE("the thesis' conveyor swallows a light ball: the run stops and says so
   tests::check_explained(sim.result.ledger);  // the last frame shows what the last impact left
 }
 
-TEST_CASE("a box that rocks to rest stops the run as an accumulation", "[event-driven]") {
+TEST_CASE("a box that lands tilted rocks to rest", "[event-driven]") {
   const auto sim = run("duration = 20\nframe = 0.1\nG = 9.8\n" + floor_body + R"(
 [[body]]
 name = "box"
@@ -234,10 +234,11 @@ position = [0, 1, 0]
 axis_angle = [0, 0, 1, 0.2]
 restitution = 0.3
 )");
-  CHECK(sim.result.status == RunStatus::stopped);
-  CHECK(sim.result.reason.find("accumulation") != std::string::npos);
+  INFO(sim.result.reason);
+  CHECK(sim.result.status == RunStatus::completed);
   tests::check_explained(sim.result.ledger);
-  CHECK(sim.result.end.seconds > 0.3);  // it fell and bounced first
+  CHECK(sim.result.cost.impacts > 3);  // it fell and bounced first
+  CHECK(sim.result.state[1].twist.angular.isZero(0.0));
 }
 
 TEST_CASE("the order of bodies in the file changes no bit", "[event-driven]") {

@@ -59,7 +59,8 @@ void check_whole(const Simulation& sim, const std::string& text) {
   tests::check_explained(sim.result.ledger);
   CHECK_FALSE(PenetrationProbe(Model(parse_scene(text, "test.toml"))).first(sim.result.state));
   CHECK(sim.result.ledger.line(EnergyLine::friction) <= 0.0);
-  CHECK(sim.result.ledger.line(EnergyLine::impact_friction) <= 0.0);
+  // Friction that sticks does no work: roundoff of an impulse times a velocity of none.
+  CHECK(sim.result.ledger.line(EnergyLine::impact_friction) <= 1e-15);
 }
 
 std::vector<double> times(const Simulation& sim, EventKind kind) {
@@ -96,14 +97,12 @@ TEST_CASE("friction 1: a tall block slides flat while mu < b/h", "[friction][ref
     const std::string text = head(10.0, mu) + plane("floor") +
                              box("block", {0.1, 0.4, 0.1}, {0, 0.4, 0}, moving({3, 0, 0}));
     const auto sim = run(text);
-    if (mu < 0.25) {
-      check_whole(sim, text);
-    } else {
-      REQUIRE(sim.result.status == RunStatus::stopped);
-      CHECK(sim.result.reason.find("it tips") != std::string::npos);
-      CHECK(sim.result.reason.find("moreau-jean") != std::string::npos);
-      tests::check_explained(sim.result.ledger);
+    check_whole(sim, text);
+    double turns = 0.0;
+    for (std::size_t k = 0; k < sim.trajectory.frame_times().size(); ++k) {
+      turns = std::max(turns, sim.trajectory.frame_state(k)[1].twist.angular.norm());
     }
+    CHECK((turns > 0.0) == (mu > 0.25));
   }
 }
 

@@ -34,10 +34,16 @@ void EventMotions::book(Flow& flow, Instant t) {
     const BodyIndex i = flow.island.bodies[k];
     now_[i] = whole ? flow.states[k] : at(i, t);
   }
-  const double roundoff = run_.options.roundoff ? new_roundoff(flow, t) : 0.0;
+  const double roundoff =
+      run_.options.roundoff && !bodies_[first].turns ? new_roundoff(flow, t) : 0.0;
   // What the motion of a top is off its closed form is truncation: polynomials are fitted to it.
-  const bool exact = flow.held || (flow.exact && !run_.model.tumbles(run_.model.island_of(first)));
+  const bool turns = bodies_[first].turns;
+  const bool exact =
+      (flow.held && !turns) || (flow.exact && !run_.model.tumbles(run_.model.island_of(first)));
   Leg leg{flow.island, booked_, now_, field_forces_, exact, roundoff, riding_work(flow, t)};
+  if (turns) {
+    leg.contact_work = book_turn(first, flow.booked, t);
+  }
   if (flow.island.forces.empty()) {
     run_.account.leg(leg);
   } else {
@@ -55,6 +61,14 @@ void EventMotions::book(Flow& flow, Instant t) {
     booked_[i] = now_[i];
   }
   flow.booked = t;
+}
+
+/// What contact forces did to a body that turns, J; books what of their work is truncation.
+double EventMotions::book_turn(BodyIndex i, Instant from, Instant to) {
+  const MovingBody& body = bodies_[i];
+  const Vector3 done = body.worked(to - body.motion.start) - body.worked(from - body.motion.start);
+  run_.ledger.add(EnergyLine::truncation, done.y());
+  return done.x();
 }
 
 /// Friction takes what slides, belts and driven surfaces give what they carry. Forces are constant,

@@ -20,12 +20,12 @@ constexpr Instant told{-1.0, 0.0};
 }  // namespace
 
 EventContacts::EventContacts(EventRun& run, EventMotions& motions, EventPredictor& predictor,
-                             ContactGraph& graph)
+                             ContactGraph& graph, const Method& method)
     : run_(run),
       motions_(motions),
       predictor_(predictor),
       accumulation_(run, motions),
-      modes_(run, motions, predictor, accumulation_, graph),
+      modes_(run, motions, predictor, accumulation_, graph, method.contact_stepper),
       bodies_(run.model.size()) {}
 
 // --- Groups ------------------------------------------------------------------------------------
@@ -115,8 +115,23 @@ void EventContacts::stay(BodyIndex a, BodyIndex b, Instant t) {
   if (lands(a, b, contact, t) || settle(pair, t, {.unloaded = true})) {
     return;
   }
+  if (meet_elsewhere(a, b, t)) {
+    return;
+  }
   depart(a, b, t);
   run_.stop(t, fmt::format("accumulation: {} stay in contact; {}", run_.names(a, b), unkept()));
+}
+
+/// Two in touch may come together elsewhere than where they are nearest: an impact there.
+bool EventContacts::meet_elsewhere(BodyIndex a, BodyIndex b, Instant t) {
+  const std::array<BodyPair, 1> both{BodyPair{a, b}};
+  const auto worst = modes_.worst_approach({}, both);
+  if (worst) {
+    Event event{.time = t, .kind = EventKind::impact, .a = a, .b = b};
+    event.contact = worst->contact;
+    meet(event, t);
+  }
+  return worst.has_value();
 }
 
 /// Whether one of the two is a ball that a face of the other could support.
@@ -147,7 +162,7 @@ void EventContacts::touch(BodyIndex a, BodyIndex b, const Contact& contact, Inst
     return;
   }
   if (accumulation_.stalls(a, b, t, least_progress * run_.epoch)) {
-    if (settle(pair, t, {.unloaded = true})) {
+    if (settle(pair, t, {.unloaded = true}) || meet_elsewhere(a, b, t)) {
       return;
     }
     depart(a, b, t);
@@ -181,7 +196,7 @@ void EventContacts::look_again(BodyIndex a, BodyIndex b, Instant t, double patie
   const double window = std::min({motions_.of(a).duration, motions_.of(b).duration, run_.epoch});
   if (accumulation_.stalls(a, b, t, least_progress * window)) {
     const std::array<BodyIndex, 2> pair{a, b};
-    if (settle(pair, t, {.unloaded = true})) {
+    if (settle(pair, t, {.unloaded = true}) || meet_elsewhere(a, b, t)) {
       return;
     }
     return run_.stop(t, fmt::format("accumulation: whether {} touch is undecided again and again, "

@@ -17,7 +17,7 @@ inline namespace core {
 class EventContacts {
  public:
   EventContacts(EventRun& run, EventMotions& motions, EventPredictor& predictor,
-                ContactGraph& graph);
+                ContactGraph& graph, const Method& method);
 
   /// The detector told contact within `patience` (s) of t; `decided`: it proved it.
   void impact(BodyIndex a, BodyIndex b, Instant t, double patience, bool decided);
@@ -50,6 +50,8 @@ class EventContacts {
   };
 
   bool meet_in_one_box(BodyIndex a, BodyIndex b, Instant t);
+  void meet(Event& event, Instant t);
+  [[nodiscard]] bool meet_elsewhere(BodyIndex a, BodyIndex b, Instant t);
   void strike(Event& event);
   [[nodiscard]] const JointSystem* joints_of(BodyIndex i) const;
   void strike_jointed(Event& event);

@@ -22,13 +22,20 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// An impact among bodies in touch is handed on so often at most, for each of them.
 constexpr std::size_t most_rounds = 1000;
 
+/// Of the points of a patch and all between: on one of the lines between two of them, where x is
+/// beyond.
 Vector3 nearest_point(const ContactManifold& manifold, const Vector3& x) {
-  const auto last = manifold.points.begin() + static_cast<std::ptrdiff_t>(manifold.size);
-  return std::min_element(manifold.points.begin(), last,
-                          [&](const auto& p, const auto& q) {
-                            return (p.position - x).squaredNorm() < (q.position - x).squaredNorm();
-                          })
-      ->position;
+  Vector3 nearest = manifold.points[0].position;
+  for (std::size_t i = 0; i < manifold.size; ++i) {
+    const Vector3& p = manifold.points[i].position;
+    for (std::size_t k = 0; k < i; ++k) {
+      const Vector3 along = manifold.points[k].position - p;
+      const double share = std::clamp((x - p).dot(along) / along.squaredNorm(), 0.0, 1.0);
+      const Vector3 between = p + share * along;
+      nearest = (between - x).squaredNorm() < (nearest - x).squaredNorm() ? between : nearest;
+    }
+  }
+  return nearest;
 }
 
 }  // namespace
@@ -73,7 +80,8 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double patience,
     return depart(a, b, t);
   }
   Event event{.time = t, .kind = EventKind::impact, .a = a, .b = b};
-  event.contact = contact_at(a, b, t, patience);
+  const auto landing = modes_.landing(a, b);
+  event.contact = landing ? landing->contact : contact_at(a, b, t, patience);
   const double approach = normal_velocity(event.contact, motions_.now(a), motions_.now(b));
   const std::array<BodyIndex, 2> pair{a, b};
   if (!decided && approach >= 0.0 && patience > 0.0) {
@@ -92,6 +100,14 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double patience,
                                  "m apart; allowed: a larger --tolerance, or another detector",
                                  run_.detector.info().name, run_.names(a, b), event.contact.gap));
   }
+  meet(event, t);
+}
+
+/// Two that approach each other strike, and what they touch with them.
+void EventContacts::meet(Event& event, Instant t) {
+  const auto [a, b] = std::pair{event.a, event.b};
+  const std::array<BodyIndex, 2> pair{a, b};
+  const double approach = normal_velocity(event.contact, motions_.now(a), motions_.now(b));
   if (strike_group({a, b}, std::max(-approach, 0.0), t)) {
     return;
   }
@@ -113,7 +129,11 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double patience,
   using Kind = EventAccumulation::Finding::Kind;
   const auto finding = accumulation_.after_impact(a, b, std::max(-approach, 0.0), t);
   if (finding.kind == Kind::none) {
-    return relaunch(a, b, t);
+    // What does not bounce goes on in touch at once.
+    const bool stays = modes_.stays(a, b, event.contact);
+    return stays && settle(pair, t, {.pressed = BodyPair{a, b}, .turning_only = true})
+               ? void()
+               : relaunch(a, b, t);
   }
   if (finding.kind != Kind::squeezed) {
     const bool unite = finding.kind != Kind::rests;
@@ -204,9 +224,14 @@ bool EventContacts::strikes_flat(Event& event) {
 bool EventContacts::still_approaching(const Event& event, double approach, Instant t) {
   const auto [a, b] = std::pair{event.a, event.b};
   const double rebound = normal_velocity(event.contact, event.after_a, event.after_b);
-  const double scale =
-      std::abs(approach) + event.after_a.twist.linear.norm() + event.after_b.twist.linear.norm();
-  if (!(rebound < -16.0 * epsilon * scale)) {  // roundoff of a product and a few sums
+  double scale = std::abs(approach);
+  for (const BodyState* after : {&event.after_a, &event.after_b}) {
+    scale += after->twist.linear.norm() +
+             after->twist.angular.norm() * (event.contact.point - after->pose.position).norm();
+  }
+  // Roundoff of a product and a few sums; with friction, what an impact is integrated to.
+  const double allowed = run_.model.friction(a, b) > 0.0 ? 1e-12 : 16.0 * epsilon;
+  if (!(rebound < -allowed * scale)) {
     return false;
   }
   depart(a, b, t);

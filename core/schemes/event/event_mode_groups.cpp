@@ -132,8 +132,9 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
         most = std::max(most, rate);
       }
       const bool struck = wish.impact && is_seed(a) && is_seed(b);
-      if (wish.impact ? least > slow || (wish.held_only && !joined && !struck)
-                      : least < -slow || most > slow) {
+      const bool elsewhere =
+          wish.turning ? least > slow || most < -slow : least < -slow || most > slow;
+      if (wish.impact ? least > slow || (wish.held_only && !joined && !struck) : elsewhere) {
         continue;  // an impact of its own, or parting
       }
       if (!found.has(j)) {
@@ -219,7 +220,54 @@ EventModes::GroupImpact EventModes::impact_group(const BodyPair& pair, Instant t
   return impact;
 }
 
+bool EventModes::stays(BodyIndex a, BodyIndex b, const Contact& contact) const {
+  const BodyState& at_a = motions_.now(a);
+  const BodyState& at_b = motions_.now(b);
+  return normal_velocity(contact, at_a, at_b) <= rest_speed(a, b, at_a, at_b, {});
+}
+
+std::optional<EventModes::Approach> EventModes::landing(BodyIndex a, BodyIndex b) const {
+  const Patch* const patch = graph_.find(a, b);
+  return patch != nullptr && patch->turns ? fastest_points(a, b) : std::nullopt;
+}
+
+/// The middle of the points that approach fastest.
+std::optional<EventModes::Approach> EventModes::fastest_points(BodyIndex a, BodyIndex b) const {
+  const BodyState& at_a = motions_.now(a);
+  const BodyState& at_b = motions_.now(b);
+  const ContactManifold m =
+      run_.detector.manifold(run_.model.shape(a), at_a.pose, run_.model.shape(b), at_b.pose,
+                             predictor_.touching_gap(a, b));
+  const auto contact = [&](std::size_t k) {
+    return Contact{m.points[k].position, m.normal, m.points[k].gap};
+  };
+  double fastest = 0.0;
+  for (std::size_t k = 0; k < m.size; ++k) {
+    fastest = std::min(fastest, normal_velocity(contact(k), at_a, at_b));
+  }
+  if (!(fastest < 0.0)) {
+    return std::nullopt;
+  }
+  constexpr double alike = 1e-6;  // points that land together
+  Contact middle{Vector3::Zero(), m.normal, infinity};
+  double count = 0.0;
+  for (std::size_t k = 0; k < m.size; ++k) {
+    if (normal_velocity(contact(k), at_a, at_b) <= (1.0 - alike) * fastest) {
+      middle.point += m.points[k].position;
+      middle.gap = std::min(middle.gap, m.points[k].gap);
+      count += 1.0;
+    }
+  }
+  middle.point /= count;
+  return Approach{a, b, middle, -fastest};
+}
+
 std::optional<EventModes::Approach> EventModes::approach(BodyIndex a, BodyIndex b) const {
+  if (const Patch* const patch = graph_.find(a, b); patch != nullptr && patch->turns) {
+    const std::optional<Approach> found = landing(a, b);
+    const double rest = rest_speed(a, b, motions_.now(a), motions_.now(b), {});
+    return found && found->speed > rest ? found : std::nullopt;
+  }
   const BodyState& at_a = motions_.now(a);
   const BodyState& at_b = motions_.now(b);
   const Shape& shape_a = run_.model.shape(a);
@@ -234,13 +282,9 @@ std::optional<EventModes::Approach> EventModes::approach(BodyIndex a, BodyIndex 
   Contact contact{o.point, o.normal, o.gap};
   double rate = normal_velocity(contact, at_a, at_b);
   if (rate >= -slow) {
-    for (std::size_t p = 0; p < manifold.size; ++p) {
-      const Contact corner{manifold.points[p].position, manifold.normal, manifold.points[p].gap};
-      const double at_corner = normal_velocity(corner, at_a, at_b);
-      if (at_corner < std::min(rate, -slow)) {
-        contact = corner;
-        rate = at_corner;
-      }
+    if (const std::optional<Approach> corners = fastest_points(a, b);
+        corners && -corners->speed < std::min(rate, -slow)) {
+      return corners;
     }
   }
   return rate < -slow ? std::optional(Approach{a, b, contact, -rate}) : std::nullopt;

@@ -2,6 +2,7 @@
 
 #include "core/schemes/event/gathered_group.hpp"
 #include "core/schemes/event/mode_guards.hpp"
+#include "core/schemes/event/turning_group.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,12 +12,14 @@
 namespace kairos {
 inline namespace core {
 EventModes::EventModes(EventRun& run, EventMotions& motions, EventPredictor& predictor,
-                       const EventAccumulation& accumulation, ContactGraph& graph)
+                       const EventAccumulation& accumulation, ContactGraph& graph,
+                       std::function<std::unique_ptr<Stepper>(double)> stepper)
     : run_(run),
       motions_(motions),
       predictor_(predictor),
       accumulation_(accumulation),
-      graph_(graph) {}
+      graph_(graph),
+      stepper_(std::move(stepper)) {}
 
 bool EventModes::settle(std::span<const BodyIndex> seeds, Instant t, const Adopt& adopt,
                         const Wish& wish) {
@@ -28,6 +31,22 @@ bool EventModes::settle(std::span<const BodyIndex> seeds, Instant t, const Adopt
   if (why_not_.empty() && found.pairs.size() < wish.pairs) {
     why_not_ = "some are still on their way";
   }
+  if (!why_not_.empty()) {
+    return false;
+  }
+  if (wish.turning_only) {
+    why_not_ = contact_mode(found.group, {wish.unloaded, wish.unite}).refusal;
+    if (why_not_.empty()) {
+      return false;
+    }
+  } else if (settle_flat(std::move(found), t, adopt, wish)) {
+    return true;
+  }
+  return settle_turning(seeds, t, adopt, wish);
+}
+
+/// Nothing turns but what may.
+bool EventModes::settle_flat(Gathered found, Instant t, const Adopt& adopt, const Wish& wish) {
   while (why_not_.empty()) {
     const FlatMode mode = contact_mode(found.group, {wish.unloaded, wish.unite});
     why_not_ = mode.refusal;
@@ -77,9 +96,7 @@ bool EventModes::settle(std::span<const BodyIndex> seeds, Instant t, const Adopt
 }
 
 void EventModes::commit(const Gathered& found, const FlatMode& mode, Instant t, const Adopt& adopt,
-                        const Alone* alone) {
-  std::vector<std::pair<BodyIndex, Instant>> adopted;
-  std::vector<std::pair<BodyIndex, BodyIndex>> supports;
+                        const Alone* alone, const Turning* turning) {
   double dissipated = 0.0;
   for (std::size_t k = 0; k < found.bodies.size(); ++k) {
     const BodyIndex i = found.bodies[k];
@@ -118,13 +135,19 @@ void EventModes::commit(const Gathered& found, const FlatMode& mode, Instant t, 
         if (mode.slip.empty() || found.group.round[k] == 0) {
           acceleration.angular.setZero();
         }
-        alone != nullptr ? motions_.hold(i, t, alone->motion) : motions_.hold(i, t, acceleration);
+        if (turning != nullptr) {
+          motions_.turn(i, t, turning->turn_of(k));
+        } else if (alone != nullptr) {
+          motions_.hold(i, t, alone->motion);
+        } else {
+          motions_.hold(i, t, acceleration);
+        }
       } else {
         motions_.launch(i, t);
       }
     }
   }
-  rub(found, mode, t, changes, alone);
+  rub(found, mode, t, changes, alone, turning);
   tell(changes, t);
   for (const BodyIndex i : found.bodies) {
     if (run_.model.is_free(i)) {
@@ -141,7 +164,7 @@ Vector3 EventModes::belt(BodyIndex i, const Vector3& normal) const {
 
 /// Who rubs on whom from now on, and what of it is new.
 void EventModes::rub(const Gathered& found, const FlatMode& mode, Instant t,
-                     std::vector<Change>& changes, const Alone* alone) {
+                     std::vector<Change>& changes, const Alone* alone, const Turning* turning) {
   for (std::size_t p = 0; p < mode.slip.size(); ++p) {
     if (mode.kept[p] == 0) {
       continue;
@@ -154,15 +177,16 @@ void EventModes::rub(const Gathered& found, const FlatMode& mode, Instant t,
       return Vector3(sign * r * n);
     };
     const auto moves_by_itself = [&](BodyIndex i) { return !run_.model.is_free(i); };
+    const Grade grade = mode.turns ? Grade::sampled : Grade::exact;
     const Slip before = graph_.find(a, b)->slip;
     const Slip now = mode.slip[p] == Slip::begins ? Slip::slides : mode.slip[p];
     graph_.find(a, b)->slip = now;
     if (mode.slip[p] == Slip::begins || (now == Slip::slides && before != Slip::slides)) {
-      changes.push_back({EventKind::slip_begins, a, b});
+      changes.push_back({EventKind::slip_begins, a, b, grade});
     } else if (now == Slip::sticks && before == Slip::slides) {
       const bool rolls = (found.group.round[patch.a] != 0 && run_.model.rotates(a)) ||
                          (found.group.round[patch.b] != 0 && run_.model.rotates(b));
-      changes.push_back({rolls ? EventKind::roll_begins : EventKind::stick_begins, a, b});
+      changes.push_back({rolls ? EventKind::roll_begins : EventKind::stick_begins, a, b, grade});
     }
     if (now == Slip::slides || moves_by_itself(a) || moves_by_itself(b)) {
       const Vector3& force = mode.force[p];
@@ -171,21 +195,23 @@ void EventModes::rub(const Gathered& found, const FlatMode& mode, Instant t,
                     .b = b,
                     .slides = now == Slip::slides,
                     .rides = now == Slip::sticks && found.driven.has_value(),
-                    .curved = alone != nullptr && alone->curved,
+                    .curved = turning != nullptr || (alone != nullptr && alone->curved),
                     .force = force,
                     .along = force - n * n.dot(force),
                     .arm_a = arm(patch.a, 1.0),
                     .arm_b = arm(patch.b, -1.0),
                     .belt_a = belt(a, n),
                     .belt_b = belt(b, n),
-                    .spent = alone != nullptr ? alone->spent : Polynomial<3>()});
+                    .spent = turning != nullptr ? turning->step.rubbed[p]
+                             : alone != nullptr ? alone->spent
+                                                : Polynomial<3>()});
     }
   }
 }
 
 void EventModes::tell(std::span<const Change> changes, Instant t) {
   for (const Change& change : changes) {
-    motions_.note(change.kind, change.a, change.b, t);
+    motions_.note(change.kind, change.a, change.b, t, change.grade);
   }
 }
 
@@ -211,7 +237,8 @@ std::vector<EventModes::Change> EventModes::join_and_part(const Gathered& found,
     const Patch patch = *graph_.find(a, b);
     graph_.part(a, b);
     if (patch.told) {
-      changes.push_back({EventKind::contact_ends, a, b});
+      changes.push_back(
+          {EventKind::contact_ends, a, b, patch.turns ? Grade::sampled : Grade::exact});
     }
   }
   for (std::size_t p = 0; p < found.pairs.size(); ++p) {
@@ -222,7 +249,8 @@ std::vector<EventModes::Change> EventModes::join_and_part(const Gathered& found,
     const bool is_new = !graph_.joins(a, b);
     Patch& patch = graph_.join(a, b);
     patch.manifold = found.group.patches[p].manifold;
-    if (!is_new) {
+    patch.turns = mode.turns;
+    if (!is_new && !(mode.turns && !patch.told)) {
       continue;
     }
     const double e = run_.model.restitution(a, b);
@@ -232,7 +260,7 @@ std::vector<EventModes::Change> EventModes::join_and_part(const Gathered& found,
     const double pressing =
         -std::min(n.dot(found.group.loads[pb].linear - mode.accelerations[pa].linear),
                   n.dot(mode.accelerations[pb].linear - found.group.loads[pa].linear));
-    const bool hops = mode.rate[p] > 0.0 && pressing > 0.0 && e < 1.0;
+    const bool hops = !mode.turns && mode.rate[p] > 0.0 && pressing > 0.0 && e < 1.0;
     const double still = hops ? 2.0 * mode.rate[p] / (pressing * (1.0 - e)) : 0.0;
     patch.begins = t + still;
     if (still > 0.0 && patch.begins < Instant::never()) {

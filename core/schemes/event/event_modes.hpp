@@ -7,6 +7,7 @@
 #include "core/schemes/event/event_predictor.hpp"
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,7 +25,8 @@ inline namespace core {
 class EventModes {
  public:
   EventModes(EventRun& run, EventMotions& motions, EventPredictor& predictor,
-             const EventAccumulation& accumulation, ContactGraph& graph);
+             const EventAccumulation& accumulation, ContactGraph& graph,
+             std::function<std::unique_ptr<Stepper>(double)> stepper);
 
   /// When the bounces of a ball on the face that supports it have died down; it is supported by
   /// nothing but the group from then on.
@@ -37,6 +39,8 @@ class EventModes {
     std::optional<BodyPair> pressed = {};  ///< only if what holds these two is pressed
     bool impact = false;                   ///< what approaches is of interest, too
     bool held_only = false;                ///< impact: only what is held, and these two
+    bool turning = false;                  ///< pairs of which some points are at rest, too
+    bool turning_only = false;             ///< only if it turns
   };
   /// Settles all that touches the seeds at t, whose states are at `now`; false, and nothing has
   /// changed, where they cannot go on in touch. `why_not` then says why.
@@ -61,6 +65,11 @@ class EventModes {
     Contact contact;
     double speed = 0.0;
   };
+  /// Where a pair in touch that turns, whose states are at `now`, comes together: the middle of the
+  /// points that approach fastest, however slowly; nothing for others, or where none does.
+  [[nodiscard]] std::optional<Approach> landing(BodyIndex a, BodyIndex b) const;
+  /// Whether a contact has no speed along its normal that is worth a hop.
+  [[nodiscard]] bool stays(BodyIndex a, BodyIndex b, const Contact& contact) const;
   [[nodiscard]] std::optional<Approach> worst_approach(std::span<const BodyIndex> bodies,
                                                        std::span<const BodyPair> others) const;
   /// A contact that begins or ends, to be told when its bodies have their new motions.
@@ -68,6 +77,7 @@ class EventModes {
     EventKind kind = EventKind::contact_ends;
     BodyIndex a = 0;
     BodyIndex b = 0;
+    Grade grade = Grade::exact;
   };
   /// An impact of several bodies in touch, as an impact law sees it.
   struct GroupImpact {
@@ -96,10 +106,13 @@ class EventModes {
 
  private:
   struct Gathered;
+  /// A step of a group that turns.
+  struct Turning;
   [[nodiscard]] Gathered gather(std::span<const BodyIndex> seeds, Instant t, const Wish& wish);
   [[nodiscard]] double rest_speed(BodyIndex a, BodyIndex b, const BodyState& at_a,
                                   const BodyState& at_b, const Wish& wish) const;
   [[nodiscard]] std::optional<Approach> approach(BodyIndex a, BodyIndex b) const;
+  [[nodiscard]] std::optional<Approach> fastest_points(BodyIndex a, BodyIndex b) const;
   [[nodiscard]] Twist load(BodyIndex i, const BodyState& state) const;
   /// One body on one surface, along a motion that is no parabola.
   struct Alone {
@@ -108,13 +121,28 @@ class EventModes {
     Polynomial<3> spent{};  ///< curved: what friction has taken by a time, as the x, J
   };
   void commit(const Gathered& group, const FlatMode& mode, Instant t, const Adopt& adopt,
-              const Alone* alone = nullptr);
+              const Alone* alone = nullptr, const Turning* turning = nullptr);
   [[nodiscard]] bool settle_curved(const Gathered& found, Instant t, const Adopt& adopt);
+  [[nodiscard]] bool settle_flat(Gathered found, Instant t, const Adopt& adopt, const Wish& wish);
+  [[nodiscard]] bool settle_turning(std::span<const BodyIndex> seeds, Instant t, const Adopt& adopt,
+                                    const Wish& wish);
+  [[nodiscard]] std::string add_touches(Gathered& found, Turning& turning) const;
+  [[nodiscard]] static bool presses(const Gathered& found, const Turning& turning,
+                                    const BodyPair& pair);
+  [[nodiscard]] double next_step(const Gathered& found);
+  [[nodiscard]] bool creeps(const Gathered& found);
+  [[nodiscard]] bool turned(std::span<const BodyIndex> bodies);
+  void lift(Gathered& found, Turning& turning);
+  void raise(Gathered& found, Turning& turning);
+  [[nodiscard]] bool fly(const Gathered& found, const Turning& turning, Instant t,
+                         const Adopt& adopt);
+  void book_lift(const Gathered& found, Instant t);
+  void carry_on(const Gathered& found, const Turning& turning, Instant t, const Adopt& adopt);
   [[nodiscard]] bool settle_driven(const Gathered& found, Instant t, const Adopt& adopt);
   [[nodiscard]] std::vector<Change> join_and_part(const Gathered& found, const FlatMode& mode,
                                                   Instant t);
   void rub(const Gathered& found, const FlatMode& mode, Instant t, std::vector<Change>& changes,
-           const Alone* alone);
+           const Alone* alone, const Turning* turning);
   [[nodiscard]] Vector3 belt(BodyIndex i, const Vector3& normal) const;
 
   EventRun& run_;
@@ -122,6 +150,7 @@ class EventModes {
   EventPredictor& predictor_;
   const EventAccumulation& accumulation_;
   ContactGraph& graph_;
+  std::function<std::unique_ptr<Stepper>(double)> stepper_;  ///< see `Method::contact_stepper`
   std::string why_not_;
 };
 

@@ -77,6 +77,7 @@ void EventMotions::launch(BodyIndex i, Instant t) {
   flow.held = false;
   for (const BodyIndex k : flow.island.bodies) {
     bodies_[k].rubs.clear();
+    bodies_[k].turns = false;
   }
   set_forces(flow);
   if (flow.island.joints != nullptr) {
@@ -121,11 +122,22 @@ void EventMotions::hold(BodyIndex i, Instant t, const Motion& motion) {
   set_motion(i, motion);
 }
 
+void EventMotions::turn(BodyIndex i, Instant t, const Turn& turn) {
+  hold(i, t, Twist{});
+  MovingBody& body = bodies_[i];
+  body.turns = true;
+  body.worked = turn.worked;
+  Flow& flow = flow_of(i);
+  flow.states[0] = turn.end;
+  set_motion(i, turn.motion);
+}
+
 void EventMotions::hold(BodyIndex i, Instant t, const Twist& acceleration) {
   Flow& flow = flow_of(i);
   flow.held = true;
   set_support(i, std::nullopt);
   bodies_[i].rubs.clear();
+  bodies_[i].turns = false;
   set_forces(flow);
   flow.island.constant_force[0] = run_.model.inertia(i).mass * acceleration.linear;
   flow.states[0] = booked_[i] = now_[i];
@@ -379,8 +391,8 @@ void EventMotions::set_forces(Flow& flow) {
 
 // --- What is told ------------------------------------------------------------------------------
 
-void EventMotions::note(EventKind kind, BodyIndex a, BodyIndex b, Instant t) {
-  Event event{.time = t, .kind = kind, .a = a, .b = b};
+void EventMotions::note(EventKind kind, BodyIndex a, BodyIndex b, Instant t, Grade grade) {
+  Event event{.time = t, .kind = kind, .grade = grade, .a = a, .b = b};
   event.before_a = event.after_a = at(a, t);
   event.before_b = event.after_b = at(b, t);
   run_.note(event);
@@ -399,7 +411,9 @@ void EventMotions::Rub::persist(Archive& archive) {
           from_a, from_b, booked);
 }
 
-void EventMotions::MovingBody::persist(Archive& archive) { archive(motion, support, fields, rubs); }
+void EventMotions::MovingBody::persist(Archive& archive) {
+  archive(motion, support, fields, rubs, turns, worked);
+}
 
 void EventMotions::Flow::persist(Archive& archive) {
   archive(island.constant_force, exact, carried, held, states, launched, roundoff, booked,

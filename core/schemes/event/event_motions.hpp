@@ -51,6 +51,16 @@ class EventMotions {
   /// The same along a motion that is known.
   void hold(BodyIndex i, Instant t, const Motion& motion);
 
+  /// Body i, alone in its island, turns while it touches: it moves along `motion` from `now` to
+  /// `end`. `worked`, from the motion's start on, J: what contact forces do to it as the x, and
+  /// what of all that they do is truncation, told with this body, as the y.
+  struct Turn {
+    Motion motion;
+    BodyState end;
+    Polynomial<3> worked{};
+  };
+  void turn(BodyIndex i, Instant t, const Turn& turn);
+
   /// The island of i, which joints and a contact hold, is at rest from `now` on, until it is
   /// launched again.
   void rest(BodyIndex i, Instant t);
@@ -125,7 +135,7 @@ class EventMotions {
   void book_all(Instant t);
 
   /// Tells the recorder what happened to two bodies whose states did not jump.
-  void note(EventKind kind, BodyIndex a, BodyIndex b, Instant t);
+  void note(EventKind kind, BodyIndex a, BodyIndex b, Instant t, Grade grade = Grade::exact);
   [[nodiscard]] std::int64_t evaluations() const;
 
   void persist(Archive& archive);
@@ -136,6 +146,8 @@ class EventMotions {
     std::optional<Support> support;
     std::vector<BodyIndex> fields;
     std::vector<Rub> rubs;
+    bool turns = false;      ///< while it touches
+    Polynomial<3> worked{};  ///< see `Turn`
 
     void persist(Archive& archive);
   };
@@ -171,6 +183,7 @@ class EventMotions {
 
   void book(Flow& flow, Instant t);
   void book_rubs(BodyIndex i, Instant t);
+  [[nodiscard]] double book_turn(BodyIndex i, Instant from, Instant to);
   [[nodiscard]] double riding_work(const Flow& flow, Instant t);
   [[nodiscard]] double new_roundoff(Flow& flow, Instant t);
 

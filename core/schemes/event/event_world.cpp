@@ -14,7 +14,7 @@ EventWorld::EventWorld(const Model& model, const Method& method, const SchemeOpt
       graph_(run_.agenda.ranks()),
       motions_(run_, method),
       predictor_(run_, motions_, grasps_, graph_, method),
-      contacts_(run_, motions_, predictor_, graph_),
+      contacts_(run_, motions_, predictor_, graph_, method),
       hands_(run_, motions_, predictor_, contacts_, grasps_),
       clock_(run_.options),
       drawn_(model.initial_state()) {

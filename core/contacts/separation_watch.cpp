@@ -1,0 +1,248 @@
+#include "core/contacts/separation_watch.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+using Kind = TouchFeature::Kind;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Times are told apart to this part of a step.
+constexpr double finest = 0x1p-46;
+/// Corners this near to a held feature, relative to how far they are out, belong to it.
+constexpr double same_corner = 1e-9;
+
+/// Bounds of one motion over a step.
+struct Bounds {
+  Bounds(const Motion& motion, double h) {
+    speed = motion.speed_bound(0.0, h);
+    turning = motion.angular_speed_bound(0.0, h);
+    for (int k = motion.position.degree(); k >= 2; --k) {
+      acceleration = acceleration * h + k * (k - 1) * motion.position[k].norm();
+    }
+    if (motion.rotation == RotationKind::polynomial) {
+      double first = 0.0;
+      double second = 0.0;
+      double least = motion.quaternion[0].norm();
+      double way = 0.0;
+      for (int k = motion.quaternion.degree(); k >= 1; --k) {
+        const double c = motion.quaternion[k].norm();
+        first = first * h + k * c;
+        second = k >= 2 ? second * h + k * (k - 1) * c : second;
+        way = (way + c) * h;
+      }
+      least = std::max(least - way, 1e-3);
+      // w = 2 u' u*, u = q/|q|: |w'| <= 2 |u''|, |u''| <= |q''|/|q| + 3 (|q'|/|q|)^2, and |w|^2
+      // / 2.
+      spin = 2.0 * second / least + 8.0 * (first / least) * (first / least);
+    }
+  }
+  /// Of the second derivative of a point so far from the origin.
+  [[nodiscard]] double bend(double arm) const {
+    return acceleration + arm * (spin + turning * turning);
+  }
+
+  double speed = 0.0;         ///< m/s
+  double acceleration = 0.0;  ///< m/s^2
+  double turning = 0.0;       ///< rad/s
+  double spin = 0.0;          ///< rad/s^2
+};
+
+/// One plane, and the corners that are to stay beyond it.
+struct Candidate {
+  std::vector<TouchFeature> corners_a;
+  std::vector<TouchFeature> corners_b;
+  const TouchFeature* plane = nullptr;  ///< of a face
+  bool of_a = false;
+  const Touch* touch = nullptr;  ///< or through it
+  double bend = 0.0;             ///< bound of second derivatives of heights, m/s^2
+  double least = 0.0;            ///< what comes nearer strikes, m
+};
+
+bool belongs(const TouchFeature& corner, const TouchFeature& held) {
+  const Vector3 from = corner.at - held.at;
+  const double size = corner.at.norm() + held.at.norm();
+  if (held.kind == Kind::line) {
+    return (from - held.direction * held.direction.dot(from)).norm() <= same_corner * size;
+  }
+  return held.kind == Kind::ball && from.norm() <= same_corner * size;
+}
+
+class Watcher {
+ public:
+  Watcher(const SeparationWatch& watch, double duration)
+      : watch_(watch),
+        a_(watch.motion_a, duration),
+        b_(watch.motion_b, duration),
+        duration_(duration) {
+    for (const TouchFeature& plane : watch.pair.planes_b) {
+      add_plane(plane, false);
+    }
+    for (const TouchFeature& plane : watch.pair.planes_a) {
+      add_plane(plane, true);
+    }
+    for (const Touch& touch : watch.held) {
+      if (touch.on_a.kind != Kind::plane && touch.on_b.kind != Kind::plane) {
+        add_touch(touch);
+      }
+    }
+  }
+
+  double strike_time() {
+    const std::vector<double> start = heights(0.0);
+    for (std::size_t c = 0; c < candidates_.size(); ++c) {
+      // What is nearer already, and draws away, may be so.
+      candidates_[c].least = 0.9375 * std::min(watch_.pair.nearest, start[c]);
+    }
+    return safe_until(0.0, start, duration_, heights(duration_));
+  }
+
+ private:
+  [[nodiscard]] double reach(const TouchFeature& f) const { return f.at.norm(); }
+
+  void add_plane(const TouchFeature& plane, bool of_a) {
+    Candidate c;
+    c.plane = &plane;
+    c.of_a = of_a;
+    const Bounds& carrier = of_a ? a_ : b_;
+    const Bounds& other = of_a ? b_ : a_;
+    const auto& corners = of_a ? watch_.pair.corners_b : watch_.pair.corners_a;
+    auto& mine = of_a ? c.corners_b : c.corners_a;
+    double arm = 0.0;
+    for (const TouchFeature& corner : corners) {
+      const bool is_held =
+          std::any_of(watch_.held.begin(), watch_.held.end(), [&](const Touch& touch) {
+            const TouchFeature& face = of_a ? touch.on_a : touch.on_b;
+            return face.kind == Kind::plane && belongs(corner, of_a ? touch.on_b : touch.on_a);
+          });
+      if (!is_held) {
+        mine.push_back(corner);
+        arm = std::max(arm, reach(corner));
+      }
+    }
+    if (corners.empty()) {
+      return;  // a half-space: no corner tells on which side it is
+    }
+    c.bend = bend(carrier, other, arm, reach(plane));
+    candidates_.push_back(std::move(c));
+  }
+
+  /// Of n.(x - q), n and q of `carrier`.
+  [[nodiscard]] double bend(const Bounds& carrier, const Bounds& other, double arm,
+                            double plane_arm) const {
+    const Vector3 between = watch_.motion_a.position[0] - watch_.motion_b.position[0];
+    const double way = duration_ * (carrier.speed + other.speed);
+    const double turning = carrier.turning;
+    const double speed = carrier.speed + other.speed + arm * other.turning + plane_arm * turning;
+    return other.bend(arm) +
+           (turning > 0.0 || carrier.speed > 0.0 ? carrier.bend(plane_arm) : 0.0) +
+           2.0 * turning * speed +
+           (carrier.spin + turning * turning) *
+               (turning > 0.0 ? between.norm() + way + arm + plane_arm : 0.0);
+  }
+
+  void add_touch(const Touch& touch) {
+    Candidate c;
+    c.touch = &touch;
+    double arm_a = reach(touch.on_a);
+    double arm_b = reach(touch.on_b);
+    for (const TouchFeature& corner : watch_.pair.corners_a) {
+      arm_a = std::max(arm_a, reach(corner));
+      if (!belongs(corner, touch.on_a)) {
+        c.corners_a.push_back(corner);
+      }
+    }
+    for (const TouchFeature& corner : watch_.pair.corners_b) {
+      arm_b = std::max(arm_b, reach(corner));
+      if (!belongs(corner, touch.on_b)) {
+        c.corners_b.push_back(corner);
+      }
+    }
+    // The normal of two lines turns faster than they do by 1 / sin of their angle.
+    double sine = 1.0;
+    if (touch.on_a.kind == Kind::line && touch.on_b.kind == Kind::line) {
+      sine = (watch_.motion_a.orientation(0.0) * touch.on_a.direction)
+                 .cross(watch_.motion_b.orientation(0.0) * touch.on_b.direction)
+                 .norm();
+    }
+    const double turning = 2.0 * (a_.turning + b_.turning) / sine;
+    const double size = 2.0 * (arm_a + arm_b);
+    c.bend = a_.bend(arm_a) + b_.bend(arm_b) +
+             2.0 * turning * (a_.speed + b_.speed + arm_a * a_.turning + arm_b * b_.turning) +
+             size * (2.0 * (a_.spin + b_.spin) / sine + 2.0 * turning * turning);
+    candidates_.push_back(std::move(c));
+  }
+
+  [[nodiscard]] double height(const Candidate& c, const BodyState& a, const BodyState& b) const {
+    double least = infinity;
+    const auto over = [&](const std::vector<TouchFeature>& corners, const Pose& pose,
+                          const Vector3& n, const Vector3& q, double plus) {
+      for (const TouchFeature& corner : corners) {
+        least = std::min(least, n.dot(pose.to_world(corner.at) - q) - corner.radius + plus);
+      }
+    };
+    if (c.plane != nullptr) {
+      const Pose& carrier = c.of_a ? a.pose : b.pose;
+      const Vector3 n = carrier.orientation * c.plane->direction;
+      over(c.of_a ? c.corners_b : c.corners_a, c.of_a ? b.pose : a.pose, n,
+           carrier.to_world(c.plane->at), 0.0);
+      return least;
+    }
+    const TouchNow now = look_at(*c.touch, a, b);
+    over(c.corners_a, a.pose, -now.normal, now.point_a, now.gap);
+    over(c.corners_b, b.pose, now.normal, now.point_b, now.gap);
+    return least;
+  }
+
+  [[nodiscard]] std::vector<double> heights(double s) const {
+    const BodyState a{watch_.motion_a.pose(s), {}};
+    const BodyState b{watch_.motion_b.pose(s), {}};
+    std::vector<double> out;
+    for (const Candidate& c : candidates_) {
+      out.push_back(height(c, a, b));
+    }
+    return out;
+  }
+
+  /// The last time in [s0, s1] up to which some plane is known to separate.
+  double safe_until(double s0, const std::vector<double>& h0, double s1,
+                    const std::vector<double>& h1) {
+    const double ds = s1 - s0;
+    for (std::size_t c = 0; c < candidates_.size(); ++c) {
+      if (std::min(h0[c], h1[c]) - 0.125 * ds * ds * candidates_[c].bend >
+          std::max(candidates_[c].least, 0.0)) {
+        return s1;
+      }
+    }
+    if (ds <= finest * duration_) {
+      return s0;
+    }
+    const double middle = 0.5 * (s0 + s1);
+    const std::vector<double> hm = heights(middle);
+    const double until = safe_until(s0, h0, middle, hm);
+    return until < middle ? until : safe_until(middle, hm, s1, h1);
+  }
+
+  const SeparationWatch& watch_;
+  Bounds a_;
+  Bounds b_;
+  double duration_;
+  std::vector<Candidate> candidates_;
+};
+
+}  // namespace
+
+double SeparationWatch::strike_time(double duration) const {
+  return Watcher(*this, duration).strike_time();
+}
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,313 @@
+#include "core/contacts/touch.hpp"
+
+#include <Eigen/Geometry>
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+using Kind = TouchFeature::Kind;
+
+/// A feature in the world, and how it moves.
+struct Placed {
+  Placed(const TouchFeature& feature, const BodyState& state)
+      : at(state.pose.to_world(feature.at)),
+        direction(state.pose.orientation * feature.direction),
+        radius(feature.radius),
+        origin(state.pose.position),
+        v(state.twist.linear),
+        w(state.twist.angular) {}
+
+  [[nodiscard]] Vector3 velocity(const Vector3& x) const { return v + w.cross(x - origin); }
+  /// Acceleration of the material point at x, without those of the body.
+  [[nodiscard]] Vector3 centripetal(const Vector3& x) const { return w.cross(w.cross(x - origin)); }
+
+  Vector3 at;
+  Vector3 direction;
+  double radius;
+  Vector3 origin;
+  Vector3 v;
+  Vector3 w;
+};
+
+/// Where surfaces touch: the points, and how fast normal and point of contact go.
+TouchNow of_points(const Placed& a, const Placed& b, const Vector3& n, double gap) {
+  TouchNow now;
+  now.normal = n;
+  now.gap = gap;
+  now.point_a = a.at + a.radius * n;
+  now.point_b = b.at - b.radius * n;
+  return now;
+}
+
+/// A ball of b over a plane of a.
+TouchNow ball_on_plane(const Placed& a, const Placed& b) {
+  const Vector3& n = a.direction;
+  const double gap = n.dot(b.at - a.at) - b.radius;
+  TouchNow now = of_points(a, b, n, gap);
+  now.point_a = b.at - (b.radius + gap) * n;
+  const Vector3 n_rate = a.w.cross(n);
+  const Vector3 centre = b.velocity(b.at);
+  const Vector3 slip = centre - a.velocity(b.at);
+  now.normal_bias = n.dot(b.centripetal(b.at) - a.centripetal(b.at) - 2.0 * a.w.cross(slip));
+  now.velocity = b.velocity(now.point_b) - a.velocity(now.point_a);
+  const Vector3 x_rate = centre - b.radius * n_rate;
+  now.bias = b.centripetal(b.at) - b.radius * b.w.cross(n_rate) - a.w.cross(x_rate - a.v);
+  return now;
+}
+
+TouchNow ball_on_ball(const Placed& a, const Placed& b) {
+  const Vector3 between = b.at - a.at;
+  const double distance = between.norm();
+  const Vector3 n = between / distance;
+  TouchNow now = of_points(a, b, n, distance - a.radius - b.radius);
+  const Vector3 v = b.velocity(b.at) - a.velocity(a.at);
+  const Vector3 across = v - n * n.dot(v);
+  const Vector3 n_rate = across / distance;
+  const Vector3 centripetal = b.centripetal(b.at) - a.centripetal(a.at);
+  now.normal_bias = n.dot(centripetal) + across.squaredNorm() / distance;
+  now.velocity = b.velocity(now.point_b) - a.velocity(now.point_a);
+  now.bias = centripetal - b.radius * b.w.cross(n_rate) - a.radius * a.w.cross(n_rate);
+  return now;
+}
+
+/// A ball of b at a line of a.
+TouchNow ball_on_line(const Placed& a, const Placed& b) {
+  const Vector3& e = a.direction;
+  const Vector3 between = b.at - a.at;
+  const Vector3 foot = a.at + e * e.dot(between);
+  const double distance = (b.at - foot).norm();
+  const Vector3 n = (b.at - foot) / distance;
+  TouchNow now = of_points(a, b, n, distance - b.radius);
+  now.point_a = foot;
+  const Vector3 centre = b.velocity(b.at);
+  const Vector3 seen = centre - a.velocity(b.at);  // in the frame of a
+  const Vector3 across = seen - n * n.dot(seen) - e * e.dot(seen);
+  const Vector3 n_rate = across / distance + a.w.cross(n);
+  now.normal_bias = n.dot(b.centripetal(b.at) - a.centripetal(b.at) - 2.0 * a.w.cross(seen)) +
+                    across.squaredNorm() / distance;
+  now.velocity = b.velocity(now.point_b) - a.velocity(now.point_a);
+  const Vector3 x_rate = centre - b.radius * n_rate;
+  now.bias = b.centripetal(b.at) - b.radius * b.w.cross(n_rate) - a.w.cross(x_rate - a.v);
+  return now;
+}
+
+TouchNow line_on_line(const Placed& a, const Placed& b, const Vector3& side) {
+  const Vector3 m = a.direction.cross(b.direction);
+  const double length = m.norm();
+  const double sign = m.dot(side) < 0.0 ? -1.0 : 1.0;
+  const Vector3 n = sign * m / length;
+  const Vector3 between = b.at - a.at;
+  // Nearest points: between + t_b e_b - t_a e_a along n.
+  const Vector3 to_a = b.direction.cross(m) / (length * length);
+  const Vector3 to_b = a.direction.cross(m) / (length * length);
+  TouchNow now;
+  now.normal = n;
+  now.gap = n.dot(between);
+  now.point_a = a.at + a.direction * between.dot(to_a);
+  now.point_b = b.at + b.direction * between.dot(to_b);
+  now.velocity = b.velocity(now.point_b) - a.velocity(now.point_a);
+  now.bias = b.centripetal(now.point_b) - a.centripetal(now.point_a);
+  const Vector3 m_rate =
+      a.w.cross(a.direction).cross(b.direction) + a.direction.cross(b.w.cross(b.direction));
+  now.normal_bias = n.dot(now.bias) + 2.0 * sign * now.velocity.dot(m_rate) / length;
+  return now;
+}
+
+/// The same seen from b.
+TouchNow turned_round(TouchNow now) {
+  std::swap(now.point_a, now.point_b);
+  now.normal = -now.normal;
+  now.velocity = -now.velocity;
+  now.bias = -now.bias;
+  return now;
+}
+
+// --- Which features ----------------------------------------------------------------------------
+
+/// A polytope as a box or a hull has it.
+struct Corners {
+  std::vector<Vector3> vertices;
+  std::vector<std::array<std::size_t, 2>> edges;
+  double rounding = 0.0;
+  double size = 0.0;
+};
+
+Corners box_corners(const Box& box) {
+  Corners c;
+  for (std::size_t k = 0; k < 8; ++k) {
+    c.vertices.emplace_back(
+        Vector3((k & 1U) != 0 ? 1.0 : -1.0, (k & 2U) != 0 ? 1.0 : -1.0, (k & 4U) != 0 ? 1.0 : -1.0)
+            .cwiseProduct(box.half_extents));
+    for (const std::size_t bit : {1U, 2U, 4U}) {
+      if ((k & bit) == 0) {
+        c.edges.push_back({k, k | bit});
+      }
+    }
+  }
+  c.size = box.half_extents.norm();
+  return c;
+}
+
+Corners hull_corners(const Hull& hull) {
+  Corners c;
+  c.vertices = hull.core->vertices;
+  for (const auto& edge : hull.core->edges) {
+    c.edges.push_back({edge[0], edge[1]});
+  }
+  c.rounding = hull.rounding;
+  c.size = hull.core->radius;
+  return c;
+}
+
+std::optional<Corners> polytope_corners(const Shape& shape) {
+  if (const auto* box = std::get_if<Box>(&shape)) {
+    return box_corners(*box);
+  }
+  if (const auto* hull = std::get_if<Hull>(&shape)) {
+    return hull_corners(*hull);
+  }
+  return std::nullopt;
+}
+
+/// As near as this part of the size a vertex is where a manifold has its point.
+constexpr double near_vertex = 1e-7;
+
+/// The corner or cap at a point of the surface (body frame), the normal pointing out of the body.
+std::optional<TouchFeature> ball_feature(const Shape& shape, const Vector3& x,
+                                         const Vector3& outward) {
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+    return TouchFeature{Kind::ball, Vector3::Zero(), Vector3::Zero(), sphere->radius};
+  }
+  if (const auto* capsule = std::get_if<Capsule>(&shape)) {
+    const Vector3 end = Vector3::UnitY() * std::copysign(0.5 * capsule->length, x.y());
+    if ((x - capsule->radius * outward - end).norm() > near_vertex * capsule->radius) {
+      return std::nullopt;
+    }
+    return TouchFeature{Kind::ball, end, Vector3::Zero(), capsule->radius};
+  }
+  if (const auto c = polytope_corners(shape)) {
+    const Vector3 inside = x - c->rounding * outward;
+    for (const Vector3& vertex : c->vertices) {
+      if ((vertex - inside).norm() <= near_vertex * c->size) {
+        return TouchFeature{Kind::ball, vertex, Vector3::Zero(), c->rounding};
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+/// The edge nearest to a point of the surface, of those that `across` is perpendicular to.
+std::optional<TouchFeature> line_feature(const Shape& shape, const Vector3& x,
+                                         const Vector3& across) {
+  const auto c = polytope_corners(shape);
+  if (!c || c->rounding > 0.0) {
+    return std::nullopt;
+  }
+  std::optional<TouchFeature> best;
+  double nearest = near_vertex * c->size;
+  for (const auto& [i, j] : c->edges) {
+    const Vector3 direction = (c->vertices[j] - c->vertices[i]).normalized();
+    const Vector3 from = x - c->vertices[i];
+    const double distance = (from - direction * direction.dot(from)).norm();
+    if (std::abs(direction.dot(across)) <= 1e-6 && distance <= nearest) {
+      nearest = distance;
+      best = TouchFeature{Kind::line, c->vertices[i], direction, 0.0};
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+TouchNow look_at(const Touch& touch, const BodyState& state_a, const BodyState& state_b) {
+  const Placed a(touch.on_a, state_a);
+  const Placed b(touch.on_b, state_b);
+  if (touch.on_a.kind == Kind::line && touch.on_b.kind == Kind::line) {
+    return line_on_line(a, b, touch.normal);
+  }
+  if (touch.on_a.kind == Kind::plane) {
+    return ball_on_plane(a, b);
+  }
+  if (touch.on_b.kind == Kind::plane) {
+    return turned_round(ball_on_plane(b, a));
+  }
+  if (touch.on_a.kind == Kind::line) {
+    return ball_on_line(a, b);
+  }
+  return touch.on_b.kind == Kind::line ? turned_round(ball_on_line(b, a)) : ball_on_ball(a, b);
+}
+
+std::optional<std::vector<TouchFeature>> corners_of(const Shape& shape) {
+  std::vector<TouchFeature> corners;
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+    corners.push_back({Kind::ball, Vector3::Zero(), Vector3::Zero(), sphere->radius});
+  } else if (const auto* capsule = std::get_if<Capsule>(&shape)) {
+    for (const double end : {-0.5, 0.5}) {
+      corners.push_back(
+          {Kind::ball, Vector3::UnitY() * end * capsule->length, Vector3::Zero(), capsule->radius});
+    }
+  } else if (const auto c = polytope_corners(shape)) {
+    for (const Vector3& vertex : c->vertices) {
+      corners.push_back({Kind::ball, vertex, Vector3::Zero(), c->rounding});
+    }
+  } else if (!std::holds_alternative<HalfSpace>(shape)) {
+    return std::nullopt;
+  }
+  return corners;
+}
+
+std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point,
+                              const Shape& shape_a, const Pose& a, const Shape& shape_b,
+                              const Pose& b) {
+  const ContactManifold::Point& p = manifold.points[point];
+  const Vector3& n = manifold.normal;
+  const Vector3 on_a = a.to_body(p.position - 0.5 * p.gap * n);
+  const Vector3 on_b = b.to_body(p.position + 0.5 * p.gap * n);
+  const Vector3 n_A = a.orientation.conjugate() * n;
+  const Vector3 n_B = b.orientation.conjugate() * n;
+  Touch touch;
+  touch.normal = n;
+  const auto corner_a = ball_feature(shape_a, on_a, n_A);
+  const auto corner_b = ball_feature(shape_b, on_b, -n_B);
+  if (manifold.face_of_b && (corner_a || !(manifold.face_of_a && corner_b))) {
+    // Where edges cross on a face the point goes with a, until it is looked at again.
+    touch.on_a = corner_a.value_or(TouchFeature{Kind::ball, on_a, Vector3::Zero(), 0.0});
+    touch.on_b = {Kind::plane, on_b, -n_B, 0.0};
+    return touch;
+  }
+  if (manifold.face_of_a) {
+    touch.on_a = {Kind::plane, on_a, n_A, 0.0};
+    touch.on_b = corner_b.value_or(TouchFeature{Kind::ball, on_b, Vector3::Zero(), 0.0});
+    return touch;
+  }
+  const auto edge_a = line_feature(shape_a, on_a, n_A);
+  const auto edge_b = line_feature(shape_b, on_b, n_B);
+  if (!(corner_a || edge_a) || !(corner_b || edge_b)) {
+    return std::nullopt;
+  }
+  touch.on_a = corner_a ? *corner_a : *edge_a;
+  touch.on_b = corner_b ? *corner_b : *edge_b;
+  if (corner_a && corner_b && corner_a->radius + corner_b->radius == 0.0) {
+    return std::nullopt;  // two vertices have no normal
+  }
+  if (!corner_a && !corner_b) {
+    const Vector3 cross =
+        (a.orientation * edge_a->direction).cross(b.orientation * edge_b->direction);
+    if (cross.norm() < 1e-6) {
+      return std::nullopt;
+    }
+  }
+  if ((corner_a && !corner_b && corner_a->radius == 0.0) ||
+      (corner_b && !corner_a && corner_b->radius == 0.0)) {
+    return std::nullopt;  // neither have a vertex and an edge
+  }
+  return touch;
+}
+
+}  // namespace core
+}  // namespace kairos

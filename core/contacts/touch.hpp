@@ -1,0 +1,69 @@
+#pragma once
+
+#include "core/contact_manifold.hpp"
+#include "core/contacts/contact_system.hpp"
+#include "core/shape.hpp"
+#include "core/state.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+
+/// What of a body touches: it goes with the body.
+struct TouchFeature {
+  enum class Kind : char {
+    ball,   ///< all within `radius` of a point; radius 0: a vertex
+    plane,  ///< of a face
+    line,   ///< of an edge
+  };
+  Kind kind = Kind::ball;
+  Vector3 at = Vector3::Zero();         ///< body frame, m
+  Vector3 direction = Vector3::Zero();  ///< outward normal, or along the line; body frame, unit
+  double radius = 0.0;                  ///< m
+};
+
+/// Two features that touch at one point: a ball and a plane, a line or a ball, or two lines.
+struct Touch {
+  std::size_t a = 0;  ///< places in the group
+  std::size_t b = 0;
+  TouchFeature on_a;
+  TouchFeature on_b;
+  Vector3 normal = Vector3::Zero();  ///< from a to b where it was found: the side of two lines
+  double friction = 0.0;             ///< Coulomb's
+  double gap = 0.0;                  ///< at which it is held, m
+  std::size_t pair = 0;              ///< of the group
+  double rest_speed = 0.0;           ///< m/s; what slides slower than this may be taken to stick
+  bool rough = false;                ///< its friction stands for an infinite one
+};
+
+/// A touch at two states. Rates and accelerations are of b along a.
+struct TouchNow {
+  Vector3 normal = Vector3::Zero();   ///< unit, from a to b, world frame
+  Vector3 point_a = Vector3::Zero();  ///< of the surface of a, world frame, m
+  Vector3 point_b = Vector3::Zero();
+  double gap = 0.0;                    ///< m
+  Vector3 velocity = Vector3::Zero();  ///< where they touch, m/s
+  double normal_bias = 0.0;        ///< second derivative of the gap without accelerations, m/s^2
+  Vector3 bias = Vector3::Zero();  ///< derivative of `velocity` without accelerations, m/s^2
+};
+
+/// Where and how fast two features touch, to second order of their motion: with accelerations
+/// (dv, dw) of both bodies the gap has the second derivative n.(dv_b + dw_b x r_b - dv_a - dw_a x
+/// r_a) + `normal_bias`, r from the origins to the points; and so has the velocity its derivative
+/// with `bias`.
+[[nodiscard]] TouchNow look_at(const Touch& touch, const BodyState& a, const BodyState& b);
+
+/// Corners of a shape, each a ball; a half-space has none. nullopt: the shape is round in a way
+/// that has no corners.
+[[nodiscard]] std::optional<std::vector<TouchFeature>> corners_of(const Shape& shape);
+
+/// The features of two bodies that touch at a point of their manifold; nullopt where they are none
+/// of those that a `Touch` knows.
+[[nodiscard]] std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point,
+                                            const Shape& shape_a, const Pose& a,
+                                            const Shape& shape_b, const Pose& b);
+
+}  // namespace core
+}  // namespace kairos

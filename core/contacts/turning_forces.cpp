@@ -1,0 +1,322 @@
+#include "core/contacts/turning_forces.hpp"
+
+#include "core/circular.hpp"
+#include "core/contacts/nonnegative_solve.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+using Does = FrictionChoice::Does;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Rows that the others imply.
+constexpr double rank_threshold = 1e-11;
+/// Of a cone; one of them along the force that is asked for.
+constexpr int rays_of_cone = 16;
+/// Proposals are sought so far; what is accepted was verified.
+constexpr int most_sweeps = 2000;
+constexpr double settled = 1e-10;
+
+bool pushes(const FrictionChoice& c) { return c.does != Does::opens; }
+bool rubs(const FrictionChoice& c) { return c.does == Does::slides || c.does == Does::begins; }
+
+}  // namespace
+
+TurningForces::TurningForces(const TurningState& state) : state_(state) {
+  for (std::size_t i = 0; i < state.bodies.size(); ++i) {
+    load_ = std::max(
+        load_, state.loads[i].linear.norm() + state.loads[i].angular.norm() * state.radius[i]);
+  }
+  for (std::size_t k = 0; k < state.touches.size(); ++k) {
+    const Touch& touch = state.touches[k];
+    now_.push_back(look_at(touch, state.states[touch.a], state.states[touch.b]));
+    load_ = std::max({load_, std::abs(now_.back().normal_bias), now_.back().bias.norm()});
+    const Vector3& n = now_.back().normal;
+    Vector3 t1 = now_.back().velocity - n * n.dot(now_.back().velocity);
+    t1 = t1.norm() > 0.0 ? Vector3(t1.normalized()) : n.unitOrthogonal();
+    t1 = (t1 - n * n.dot(t1)).normalized();
+    lines_.push_back({line(k, n), line(k, t1), line(k, n.cross(t1))});
+    weight_.push_back(coupling(lines_.back()[0], lines_.back()[0]));
+  }
+}
+
+TurningForces::Line TurningForces::line(std::size_t k, const Vector3& d) const {
+  const Touch& touch = state_.touches[k];
+  Line out{k, d, {}, {}, {}, {}};
+  const auto side = [&](std::size_t i, const Vector3& point, double sign, Vector6& asks,
+                        Vector6& gives) {
+    const GroupBody& body = state_.bodies[i];
+    const Vector3 moment = (point - body.position).cross(d);
+    asks.head<3>() = sign * d;
+    asks.tail<3>() = sign * moment;
+    gives.head<3>() = sign * body.inverse_mass * d;
+    gives.tail<3>() = sign * (body.inverse_inertia * moment);
+  };
+  side(touch.a, now_[k].point_a, -1.0, out.of_a, out.to_a);
+  side(touch.b, now_[k].point_b, 1.0, out.of_b, out.to_b);
+  return out;
+}
+
+double TurningForces::coupling(const Line& asks, const Line& gives) const {
+  const Touch& r = state_.touches[asks.touch];
+  const Touch& s = state_.touches[gives.touch];
+  double sum = 0.0;
+  if (r.a == s.a) sum += asks.of_a.dot(gives.to_a);
+  if (r.a == s.b) sum += asks.of_a.dot(gives.to_b);
+  if (r.b == s.a) sum += asks.of_b.dot(gives.to_a);
+  if (r.b == s.b) sum += asks.of_b.dot(gives.to_b);
+  return sum;
+}
+
+void TurningForces::push(const Line& line, double force, std::vector<Twist>& v) const {
+  const Touch& touch = state_.touches[line.touch];
+  v[touch.a].linear += force * line.to_a.head<3>();
+  v[touch.a].angular += force * line.to_a.tail<3>();
+  v[touch.b].linear += force * line.to_b.head<3>();
+  v[touch.b].angular += force * line.to_b.tail<3>();
+}
+
+Vector3 TurningForces::acceleration(std::size_t k, std::span<const Twist> v) const {
+  const Touch& touch = state_.touches[k];
+  const auto at = [&](std::size_t i, const Vector3& point) {
+    return v[i].at(point, state_.bodies[i].position);
+  };
+  return at(touch.b, now_[k].point_b) - at(touch.a, now_[k].point_a) + now_[k].bias;
+}
+
+double TurningForces::gap_acceleration(std::size_t k, std::span<const Twist> v) const {
+  return now_[k].normal.dot(acceleration(k, v) - now_[k].bias) + now_[k].normal_bias;
+}
+
+TurningForces::Solution TurningForces::solve(std::span<const FrictionChoice> choices) {
+  std::vector<Line> asks;
+  std::vector<Line> gives;
+  for (std::size_t k = 0; k < choices.size(); ++k) {
+    if (!pushes(choices[k])) {
+      continue;
+    }
+    const double mu = state_.touches[k].friction;
+    const bool leans = rubs(choices[k]) && mu > 0.0 && !choices[k].direction.isZero(0.0);
+    asks.push_back(lines_[k][0]);
+    gives.push_back(leans ? line(k, now_[k].normal - mu * choices[k].direction) : lines_[k][0]);
+    if (choices[k].does == Does::sticks) {
+      for (const std::size_t axis : {1U, 2U}) {
+        asks.push_back(lines_[k][axis]);
+        gives.push_back(lines_[k][axis]);
+      }
+    }
+  }
+  const auto n = static_cast<Index>(asks.size());
+  MatrixXd K(n, n);
+  VectorXd q(n);
+  for (Index r = 0; r < n; ++r) {
+    const Line& row = asks[static_cast<std::size_t>(r)];
+    for (Index c = 0; c < n; ++c) {
+      K(r, c) = coupling(row, gives[static_cast<std::size_t>(c)]);
+    }
+    const bool normal = row.direction == now_[row.touch].normal;
+    q[r] = normal ? gap_acceleration(row.touch, state_.loads)
+                  : row.direction.dot(acceleration(row.touch, state_.loads));
+  }
+  Solution found;
+  found.force.assign(choices.size(), Vector3::Zero());
+  found.accelerations = state_.loads;
+  if (n == 0) {
+    return found;
+  }
+  Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
+  decomposition.setThreshold(rank_threshold);
+  decomposition.compute(K);
+  ++solves_;
+  VectorXd x = decomposition.solve(-q);
+  x -= decomposition.solve(K * x + q);
+  found.residual = (K * x + q).lpNorm<Eigen::Infinity>() / load_;
+  for (Index c = 0; c < n; ++c) {
+    const Line& column = gives[static_cast<std::size_t>(c)];
+    found.force[column.touch] += x[c] * column.direction;
+    push(column, x[c], found.accelerations);
+  }
+  return found;
+}
+
+/// Largest violation of a sign or of a cone by the forces that were found.
+double TurningForces::cone_violation(std::span<const FrictionChoice> choices,
+                                     const Solution& found) const {
+  double worst = 0.0;
+  for (std::size_t k = 0; k < choices.size(); ++k) {
+    if (!pushes(choices[k])) {
+      continue;
+    }
+    const Vector3& n = now_[k].normal;
+    const double mu = state_.touches[k].friction;
+    const double normal = n.dot(found.force[k]);
+    double beyond = -normal;
+    if (choices[k].does == Does::sticks && std::isfinite(mu)) {
+      beyond = std::max(beyond, (found.force[k] - normal * n).norm() - mu * normal);
+    }
+    worst = std::max(worst, beyond * weight_[k] / load_);
+  }
+  return worst;
+}
+
+/// Forces inside the cones that do the same; how far from the same the nearest are.
+double TurningForces::nearest_in_cones(std::span<const FrictionChoice> choices, Solution& found) {
+  std::vector<Line> rays;
+  for (std::size_t k = 0; k < choices.size(); ++k) {
+    if (!pushes(choices[k])) {
+      continue;
+    }
+    const Vector3& n = now_[k].normal;
+    const double mu = state_.touches[k].friction;
+    if (choices[k].does != Does::sticks || mu == 0.0) {
+      const bool leans = mu > 0.0 && !choices[k].direction.isZero(0.0);
+      rays.push_back(line(k, leans ? Vector3(n - mu * choices[k].direction) : n));
+      continue;
+    }
+    const Vector3 asked = found.force[k] - n * n.dot(found.force[k]);
+    const Vector3 t1 = asked.norm() > 0.0 ? Vector3(asked.normalized()) : n.unitOrthogonal();
+    const Vector3 t2 = n.cross(t1);
+    if (std::isinf(mu)) {
+      rays.push_back(line(k, n));
+    }
+    for (int j = 0; j < rays_of_cone; ++j) {
+      const double angle = 2.0 * M_PI * j / rays_of_cone;
+      const Vector3 along = cosine(angle) * t1 + sine(angle) * t2;
+      rays.push_back(line(k, std::isinf(mu) ? along : Vector3(n + mu * along)));
+    }
+  }
+  const auto rows = static_cast<Index>(6 * state_.bodies.size());
+  MatrixXd A = MatrixXd::Zero(rows, static_cast<Index>(rays.size()));
+  VectorXd b(rows);
+  for (std::size_t i = 0; i < state_.bodies.size(); ++i) {
+    const auto at = static_cast<Index>(6 * i);
+    const Twist& with = found.accelerations[i];
+    b.segment<3>(at) = with.linear - state_.loads[i].linear;
+    b.segment<3>(at + 3) = state_.radius[i] * (with.angular - state_.loads[i].angular);
+  }
+  std::vector<double> length;
+  for (std::size_t c = 0; c < rays.size(); ++c) {
+    const Touch& touch = state_.touches[rays[c].touch];
+    const auto column = static_cast<Index>(c);
+    const auto place = [&](std::size_t i, const Vector6& gives) {
+      const auto at = static_cast<Index>(6 * i);
+      A.block<3, 1>(at, column) += gives.head<3>();
+      A.block<3, 1>(at + 3, column) += state_.radius[i] * gives.tail<3>();
+    };
+    place(touch.a, rays[c].to_a);
+    place(touch.b, rays[c].to_b);
+    length.push_back(std::max(A.col(column).norm(), 1e-300));
+    A.col(column) /= length.back();
+  }
+  const NonnegativeSolution answer = solve_nonnegative(A, b, 0);
+  solves_ += answer.solves;
+  std::fill(found.force.begin(), found.force.end(), Vector3::Zero());
+  for (std::size_t c = 0; c < rays.size(); ++c) {
+    found.force[rays[c].touch] += answer.x[static_cast<Index>(c)] / length[c] * rays[c].direction;
+  }
+  return answer.residual / load_;
+}
+
+TurningForces::Solution TurningForces::verified(std::span<const FrictionChoice> choices) {
+  Solution found = solve(choices);
+  found.violation = cone_violation(choices, found);
+  if (found.violation > FrictionForces::solve_roundoff && found.residual < 1e-9) {
+    Solution other = found;
+    const double off = nearest_in_cones(choices, other);
+    if (off < found.violation) {
+      other.violation = off;
+      found = std::move(other);
+    }
+  }
+  for (std::size_t k = 0; k < choices.size(); ++k) {
+    if (!pushes(choices[k])) {
+      found.violation =
+          std::max(found.violation, -gap_acceleration(k, found.accelerations) / load_);
+    }
+  }
+  return found;
+}
+
+/// One contact of a sweep: its force as the accelerations of the others ask for.
+void TurningForces::sweep(std::size_t k, const FrictionChoice& as_is, std::array<double, 3>& force,
+                          std::vector<Twist>& v) const {
+  const double mu = state_.touches[k].friction;
+  const double before = force[0];
+  force[0] = std::max(0.0, before - gap_acceleration(k, v) / weight_[k]);
+  push(lines_[k][0], force[0] - before, v);
+  if (mu == 0.0) {
+    return;
+  }
+  std::array<double, 2> wanted{};
+  if (rubs(as_is)) {
+    for (const std::size_t axis : {1U, 2U}) {
+      wanted[axis - 1] = -mu * force[0] * as_is.direction.dot(lines_[k][axis].direction);
+    }
+  } else {
+    const Vector3 slides = acceleration(k, v);
+    for (const std::size_t axis : {1U, 2U}) {
+      const Line& t = lines_[k][axis];
+      wanted[axis - 1] = force[axis] - slides.dot(t.direction) / coupling(t, t);
+    }
+    const double size = hypotenuse(wanted[0], wanted[1]);
+    const double most = force[0] > 0.0 ? mu * force[0] : 0.0;
+    if (size > most) {
+      wanted[0] *= most / size;
+      wanted[1] *= most / size;
+    }
+  }
+  for (const std::size_t axis : {1U, 2U}) {
+    push(lines_[k][axis], wanted[axis - 1] - force[axis], v);
+    force[axis] = wanted[axis - 1];
+  }
+}
+
+std::vector<FrictionChoice> TurningForces::propose(std::span<const FrictionChoice> as_is) {
+  std::vector<std::array<double, 3>> force(as_is.size(), {0.0, 0.0, 0.0});
+  std::vector<Twist> v = state_.loads;
+  for (int round = 0; round < most_sweeps; ++round) {
+    double changed = 0.0;
+    double most = 0.0;
+    for (std::size_t k = 0; k < as_is.size(); ++k) {
+      const std::array<double, 3> before = force[k];
+      sweep(k, as_is[k], force[k], v);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        changed = std::max(changed, std::abs(force[k][axis] - before[axis]));
+        most = std::max(most, std::abs(force[k][axis]));
+      }
+    }
+    if (changed <= settled * most) {
+      break;
+    }
+  }
+  double most = 0.0;
+  for (const auto& f : force) {
+    most = std::max(most, f[0]);
+  }
+  std::vector<FrictionChoice> choices(as_is.begin(), as_is.end());
+  for (std::size_t k = 0; k < as_is.size(); ++k) {
+    const double mu = state_.touches[k].friction;
+    const double along = hypotenuse(force[k][1], force[k][2]);
+    if (force[k][0] <= 1e-7 * most) {
+      choices[k].does = Does::opens;
+    } else if (choices[k].does == Does::sticks && std::isfinite(mu) &&
+               along >= mu * force[k][0] * (1.0 - 1e-6)) {
+      choices[k].does = Does::begins;
+      const Vector3 f = force[k][1] * lines_[k][1].direction + force[k][2] * lines_[k][2].direction;
+      choices[k].direction = along > 0.0 ? Vector3(-f / along) : Vector3(Vector3::Zero());
+    }
+  }
+  return choices;
+}
+
+}  // namespace core
+}  // namespace kairos

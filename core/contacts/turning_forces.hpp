@@ -1,0 +1,88 @@
+#pragma once
+
+#include "core/contacts/friction_forces.hpp"
+#include "core/contacts/touch.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+
+/// Bodies that turn while they touch, at one instant.
+struct TurningState {
+  std::vector<GroupBody> bodies;  ///< by place in the group
+  std::vector<BodyState> states;
+  std::vector<Twist> loads;    ///< accelerations without contact forces
+  std::vector<double> radius;  ///< how far a body reaches from its origin, m
+  std::vector<Touch> touches;
+};
+
+/// Contact forces of bodies that turn: of touches that are told what they do.
+///
+/// The unknowns are the forces at the touches, and the equations that gaps and what sticks have no
+/// acceleration (index reduction); sliding friction follows from the normal force. Where touches
+/// are redundant (an edge that sticks) the forces are those of least norm; accelerations do not
+/// depend on that.
+class TurningForces {
+ public:
+  struct Solution {
+    std::vector<Vector3> force;  ///< by touch, on b, N
+    std::vector<Twist> accelerations;
+    /// Largest violation of a sign or a cone, or of what opens and would close, in units of the
+    /// largest load; <= 0: none.
+    double violation = 0.0;
+    /// Of the equations, in the same units: more than roundoff if they contradict each other.
+    double residual = 0.0;
+  };
+
+  explicit TurningForces(const TurningState& state);
+
+  [[nodiscard]] const std::vector<TouchNow>& now() const { return now_; }
+  [[nodiscard]] double load() const { return load_; }
+  [[nodiscard]] int solves() const { return solves_; }
+  [[nodiscard]] const std::vector<Touch>& touches() const { return state_.touches; }
+
+  /// Forces and accelerations, not verified.
+  [[nodiscard]] Solution solve(std::span<const FrictionChoice> choices);
+  /// The same with its `violation`: forces within the cones are looked for where those of least
+  /// norm are not.
+  [[nodiscard]] Solution verified(std::span<const FrictionChoice> choices);
+  /// What projected Gauss-Seidel finds likely, from what is known to slide or to stick.
+  [[nodiscard]] std::vector<FrictionChoice> propose(std::span<const FrictionChoice> as_it_moves);
+
+  /// Acceleration of b along a at touch k, of the gap, and of the surfaces, m/s^2.
+  [[nodiscard]] double gap_acceleration(std::size_t k, std::span<const Twist> accelerations) const;
+  [[nodiscard]] Vector3 acceleration(std::size_t k, std::span<const Twist> accelerations) const;
+
+ private:
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  /// A unit force along `direction` at a touch.
+  struct Line {
+    std::size_t touch = 0;
+    Vector3 direction;
+    Vector6 of_a, of_b;  ///< J: what it asks of the velocities
+    Vector6 to_a, to_b;  ///< M^-1 J^T: what it gives
+  };
+  [[nodiscard]] Line line(std::size_t touch, const Vector3& direction) const;
+  [[nodiscard]] double coupling(const Line& asks, const Line& gives) const;
+  void push(const Line& line, double force, std::vector<Twist>& accelerations) const;
+  [[nodiscard]] double cone_violation(std::span<const FrictionChoice> choices,
+                                      const Solution& found) const;
+  [[nodiscard]] double nearest_in_cones(std::span<const FrictionChoice> choices, Solution& found);
+  void sweep(std::size_t k, const FrictionChoice& as_is, std::array<double, 3>& force,
+             std::vector<Twist>& accelerations) const;
+
+  const TurningState& state_;
+  std::vector<TouchNow> now_;
+  std::vector<std::array<Line, 3>> lines_;  ///< by touch: normal and two tangents
+  std::vector<double> weight_;              ///< by touch: what a unit of its normal force gives
+  double load_ = 0.0;
+  int solves_ = 0;
+};
+
+}  // namespace core
+}  // namespace kairos

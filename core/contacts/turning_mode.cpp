@@ -1,0 +1,333 @@
+#include "core/contacts/turning_mode.hpp"
+
+#include "core/circular.hpp"
+#include "core/contacts/routh_impact.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+using Choice = FrictionChoice;
+using Does = FrictionChoice::Does;
+using Solution = TurningForces::Solution;
+
+constexpr int most_turns = 30;  ///< of the directions in which something begins to slide
+/// Accelerations of what begins to slide are along it, to this part of the largest load.
+constexpr double aligned = 1e-15;
+constexpr double nearly_aligned = 1e-12;
+constexpr int most_solves = 3000;
+/// Equations that contradict each other by more than this part of the largest load do.
+constexpr double contradiction = 1e-9;
+
+class Search {
+ public:
+  Search(const TurningState& state, double still) : state_(state), forces_(state), still_(still) {}
+
+  TurningMode result() {
+    if (!search()) {
+      mode_.refusal = painleve_case()
+                          ? "Painleve's case: sliding friction would press a contact together the "
+                            "more the more it presses, and no forces are known; allowed: less "
+                            "friction"
+                          : "no contact forces were found that could be verified";
+    }
+    mode_.solves = forces_.solves();
+    if (mode_.refusal.empty()) {
+      mode_.velocities = held_velocities(state_, forces_.now(), mode_.choices);
+    }
+    return std::move(mode_);
+  }
+
+ private:
+  [[nodiscard]] Vector3 slip(std::size_t k) const {
+    const TouchNow& now = forces_.now()[k];
+    return now.velocity - now.normal * now.normal.dot(now.velocity);
+  }
+
+  [[nodiscard]] Choice as_it_moves(std::size_t k) const {
+    const Vector3 u = slip(k);
+    if (state_.touches[k].friction == 0.0) {
+      return {Does::slides, Vector3::Zero()};
+    }
+    return u.norm() > (state_.touches[k].rough ? state_.touches[k].rest_speed : still_)
+               ? Choice{Does::slides, u.normalized()}
+               : Choice{Does::sticks, Vector3::Zero()};
+  }
+
+  bool search() {
+    std::vector<Choice> as_is;
+    for (std::size_t k = 0; k < state_.touches.size(); ++k) {
+      as_is.push_back(as_it_moves(k));
+    }
+    if (attempt(as_is)) {
+      return true;
+    }
+    const std::vector<Choice> likely = forces_.propose(as_is);
+    if (attempt(likely)) {
+      return true;
+    }
+    for (const std::size_t changes : {1U, 2U}) {
+      for (const bool from_likely : {true, false}) {
+        std::vector<Choice> choices = from_likely ? likely : as_is;
+        if (change(choices, as_is, 0, changes)) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  /// With so many changes among the touches from `k` on.
+  bool change(std::vector<Choice>& choices, const std::vector<Choice>& as_is, std::size_t k,
+              std::size_t changes) {
+    if (changes == 0) {
+      return attempt(choices);
+    }
+    for (; k + changes <= choices.size(); ++k) {
+      const Choice before = choices[k];
+      for (const Does does : {Does::opens, Does::sticks, Does::begins, Does::slides}) {
+        const bool at_rest = as_is[k].does == Does::sticks;
+        const bool may_stick =
+            state_.touches[k].friction > 0.0 && slip(k).norm() <= state_.touches[k].rest_speed;
+        const bool possible = does == Does::opens || (does == Does::slides   ? !at_rest
+                                                      : does == Does::sticks ? may_stick
+                                                                             : at_rest);
+        if (!possible || does == before.does) {
+          continue;
+        }
+        choices[k] = {does, does == Does::slides ? as_is[k].direction : Vector3(Vector3::Zero())};
+        if (forces_.solves() > most_solves) {
+          return false;
+        }
+        if (change(choices, as_is, k + 1, changes - 1)) {
+          return true;
+        }
+      }
+      choices[k] = before;
+    }
+    return false;
+  }
+
+  /// What begins to slide does so where it then goes: one angle for each, by Newton's method.
+  bool attempt(std::vector<Choice> choices) {
+    std::vector<std::size_t> begins;
+    for (std::size_t k = 0; k < choices.size(); ++k) {
+      if (choices[k].does == Does::begins) {
+        begins.push_back(k);
+      }
+    }
+    if (begins.empty()) {
+      return accept(choices);
+    }
+    if (!first_directions(choices)) {
+      return false;
+    }
+    Eigen::VectorXd across = aside(choices, begins);
+    for (int turn = 0; turn < most_turns; ++turn) {
+      if (across.lpNorm<Eigen::Infinity>() <= aligned) {
+        break;
+      }
+      const Eigen::VectorXd step = newton(choices, begins, across);
+      bool better = false;
+      for (double share = 1.0; share > 1e-3 && !better; share *= 0.5) {
+        std::vector<Choice> turned = choices;
+        for (std::size_t j = 0; j < begins.size(); ++j) {
+          turned[begins[j]].direction =
+              turned_by(begins[j], choices, share * step[static_cast<Eigen::Index>(j)]);
+        }
+        const Eigen::VectorXd there = aside(turned, begins);
+        better = there.norm() < across.norm();
+        if (better) {
+          choices = turned;
+          across = there;
+        }
+      }
+      if (!better) {
+        break;
+      }
+    }
+    return across.lpNorm<Eigen::Infinity>() <= nearly_aligned && slides_on(choices, begins) &&
+           accept(choices);
+  }
+
+  /// Where friction is not known to act against yet: the acceleration without it.
+  bool first_directions(std::vector<Choice>& choices) {
+    const Solution found = forces_.solve(choices);
+    for (std::size_t k = 0; k < choices.size(); ++k) {
+      if (choices[k].does != Does::begins || !choices[k].direction.isZero(0.0)) {
+        continue;
+      }
+      const Vector3& n = forces_.now()[k].normal;
+      Vector3 a = forces_.acceleration(k, found.accelerations);
+      a -= n * n.dot(a);
+      if (a.norm() <= turning_roundoff * forces_.load()) {
+        return false;
+      }
+      choices[k].direction = a.normalized();
+    }
+    return true;
+  }
+
+  [[nodiscard]] Vector3 turned_by(std::size_t k, const std::vector<Choice>& choices,
+                                  double angle) const {
+    const Vector3& d = choices[k].direction;
+    const Vector3 side = forces_.now()[k].normal.cross(d);
+    return (cosine(angle) * d + sine(angle) * side).normalized();
+  }
+
+  /// Of the accelerations of what begins to slide, the part across its direction, of the load.
+  Eigen::VectorXd aside(const std::vector<Choice>& choices,
+                        const std::vector<std::size_t>& begins) {
+    const Solution found = forces_.solve(choices);
+    Eigen::VectorXd out(static_cast<Eigen::Index>(begins.size()));
+    for (std::size_t j = 0; j < begins.size(); ++j) {
+      const std::size_t k = begins[j];
+      const Vector3 side = forces_.now()[k].normal.cross(choices[k].direction);
+      out[static_cast<Eigen::Index>(j)] =
+          side.dot(forces_.acceleration(k, found.accelerations)) / forces_.load();
+    }
+    return out;
+  }
+
+  Eigen::VectorXd newton(const std::vector<Choice>& choices, const std::vector<std::size_t>& begins,
+                         const Eigen::VectorXd& across) {
+    constexpr double small = 1e-7;
+    Eigen::MatrixXd slope(across.size(), across.size());
+    for (std::size_t j = 0; j < begins.size(); ++j) {
+      std::vector<Choice> turned = choices;
+      turned[begins[j]].direction = turned_by(begins[j], choices, small);
+      slope.col(static_cast<Eigen::Index>(j)) = (aside(turned, begins) - across) / small;
+    }
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
+    decomposition.setThreshold(1e-9);
+    decomposition.compute(slope);
+    const Eigen::VectorXd step = -decomposition.solve(across);
+    return step * std::min(1.0, 1.0 / std::max(step.lpNorm<Eigen::Infinity>(), 1e-300));
+  }
+
+  /// Whether nothing slides along its friction.
+  bool slides_on(const std::vector<Choice>& choices, const std::vector<std::size_t>& begins) {
+    const Solution found = forces_.solve(choices);
+    return std::all_of(begins.begin(), begins.end(), [&](std::size_t k) {
+      return choices[k].direction.dot(forces_.acceleration(k, found.accelerations)) >=
+             -turning_roundoff * forces_.load();
+    });
+  }
+
+  bool accept(const std::vector<Choice>& choices) {
+    Solution found = forces_.verified(choices);
+    if (found.residual > contradiction || found.violation > turning_roundoff) {
+      return false;
+    }
+    mode_.flies = std::all_of(choices.begin(), choices.end(),
+                              [](const Choice& c) { return c.does == Does::opens; });
+    mode_.choices = choices;
+    mode_.forces = std::move(found);
+    return true;
+  }
+
+  /// Whether one of what slides would jam by itself.
+  [[nodiscard]] bool painleve_case() const {
+    for (std::size_t k = 0; k < state_.touches.size(); ++k) {
+      const Touch& touch = state_.touches[k];
+      const Vector3 u = slip(k);
+      if (touch.friction == 0.0 || !(u.norm() > still_)) {
+        continue;
+      }
+      ContactSystem alone;
+      alone.bodies = state_.bodies;
+      const Vector3& n = forces_.now()[k].normal;
+      const Vector3 t1 = u.normalized();
+      for (const Vector3& d : {n, t1, Vector3(n.cross(t1))}) {
+        alone.add(touch.a, touch.b, forces_.now()[k].point_a, d);
+      }
+      if (painleve(alone.coupling(), touch.friction, Eigen::Vector2d::UnitX())) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  const TurningState& state_;
+  TurningForces forces_;
+  double still_;
+  TurningMode mode_;
+};
+
+}  // namespace
+
+TurningMode turning_mode(const TurningState& state, double still) {
+  return Search(state, still).result();
+}
+
+std::vector<Twist> held_velocities(const TurningState& state, const std::vector<TouchNow>& now,
+                                   const std::vector<FrictionChoice>& choices) {
+  ContactSystem held;
+  held.bodies = state.bodies;
+  for (std::size_t k = 0; k < choices.size(); ++k) {
+    if (choices[k].does == Does::opens) {
+      continue;
+    }
+    const Touch& touch = state.touches[k];
+    const Vector3& n = now[k].normal;
+    const auto row = [&](const Vector3& d) {
+      held.rows.push_back({touch.a, touch.b, d, now[k].point_a - state.bodies[touch.a].position,
+                           now[k].point_b - state.bodies[touch.b].position});
+    };
+    row(n);
+    if (choices[k].does == Does::sticks) {
+      const Vector3 t1 = n.unitOrthogonal();
+      row(t1);
+      row(n.cross(t1));
+    }
+  }
+  std::vector<Twist> velocities;
+  for (const BodyState& s : state.states) {
+    velocities.push_back(s.twist);
+  }
+  held.project(velocities);
+  return velocities;
+}
+
+void put_at_gaps(TurningState& state, const std::vector<char>& moves) {
+  ContactSystem held;
+  held.bodies = state.bodies;
+  std::vector<double> off;
+  for (std::size_t k = 0; k < state.touches.size(); ++k) {
+    if (moves[k] == 0) {
+      continue;
+    }
+    const Touch& touch = state.touches[k];
+    const TouchNow now = look_at(touch, state.states[touch.a], state.states[touch.b]);
+    held.rows.push_back({touch.a, touch.b, now.normal, now.point_a - state.bodies[touch.a].position,
+                         now.point_b - state.bodies[touch.b].position});
+    off.push_back(now.gap - touch.gap);
+  }
+  if (held.rows.empty()) {
+    return;
+  }
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
+  decomposition.setThreshold(1e-11);
+  decomposition.compute(held.coupling());
+  const Eigen::Map<const Eigen::VectorXd> gaps(off.data(), static_cast<Eigen::Index>(off.size()));
+  std::vector<Twist> step(state.bodies.size());
+  held.push(-decomposition.solve(gaps), step);
+  for (std::size_t i = 0; i < state.bodies.size(); ++i) {
+    if (kairos::moves(state.bodies[i])) {
+      Pose& pose = state.states[i].pose;
+      pose.position += step[i].linear;
+      if (!step[i].angular.isZero(0.0)) {
+        pose.orientation = rotate(step[i].angular, pose.orientation).normalized();
+      }
+    }
+  }
+}
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "core/contacts/turning_forces.hpp"
+
+#include <string>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+
+/// How bodies that turn while they touch go on from an instant.
+struct TurningMode {
+  std::string refusal;                  ///< why that is not known; empty: it is
+  std::vector<FrictionChoice> choices;  ///< by touch; directions are those of sliding
+  TurningForces::Solution forces;
+  std::vector<Twist> velocities;  ///< by body, with nothing left of what is held
+  bool flies = false;             ///< nothing is held
+  int solves = 0;
+};
+
+/// Forces are inside their cones, and what opens does not close, up to this part of the largest
+/// load: roundoff of the solve.
+inline constexpr double turning_roundoff = 1e-11;
+
+/// Proposes what each touch does (opens, sticks, slides) and accepts what was verified: first that
+/// all go on as they move, then what projected Gauss-Seidel finds likely, then what differs from
+/// either in one touch or two. All touches are at rest along their normals. `still`: what slides
+/// slower than this, m/s, is taken to stick or to begin to slide.
+[[nodiscard]] TurningMode turning_mode(const TurningState& state, double still);
+
+/// Velocities with nothing left along the normals of what is held, nor where it sticks: nearest, as
+/// the kinetic energy measures.
+[[nodiscard]] std::vector<Twist> held_velocities(const TurningState& state,
+                                                 const std::vector<TouchNow>& now,
+                                                 const std::vector<FrictionChoice>& choices);
+
+/// Moves the bodies, nearest as their masses measure, so that the gaps of the touches for which
+/// `moves` holds are what they are to be; first order in what they are off by.
+void put_at_gaps(TurningState& state, const std::vector<char>& moves);
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,408 @@
+#include "core/contacts/turning_step.hpp"
+
+#include "core/bent_motion.hpp"
+#include "core/circular.hpp"
+#include "core/contacts/separation_watch.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+using Does = FrictionChoice::Does;
+
+/// A mode goes on until a force is this much beyond its cone: what follows is then no tie.
+constexpr double guard = 4.0 * turning_roundoff;
+constexpr int samples = 16;  ///< of what may end the mode, in a step
+constexpr int bisections = 48;
+constexpr int most_halvings = 40;
+/// Held gaps are off by no more than this part of what they are.
+constexpr double drift = 0.1;
+
+/// The group at other states.
+TurningState at_states(const TurningGroup& group, std::span<const BodyState> free_states) {
+  TurningState state;
+  state.radius = group.start.radius;
+  state.touches = group.start.touches;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < group.bodies.size(); ++i) {
+    const BodyInertia& inertia = group.inertia[i];
+    const bool free = inertia.mass > 0.0;
+    state.states.push_back(free ? free_states[next++] : group.start.states[i]);
+    const BodyState& s = state.states.back();
+    state.bodies.push_back(group_body(inertia, s.pose));
+    Twist load;
+    if (free) {
+      load.linear = group.constant_force[i] / inertia.mass;
+      if (inertia.rotates) {
+        load.angular = angular_acceleration(inertia, s, Vector3::Zero());
+      }
+    }
+    state.loads.push_back(load);
+  }
+  return state;
+}
+
+/// Of sliding: along the velocity, and where that is hardly any, as it was.
+Vector3 direction(const TouchNow& now, const Vector3& before, double slow) {
+  const Vector3 u = now.velocity - now.normal * now.normal.dot(now.velocity);
+  const double along = before.dot(u);
+  const Vector3 d = before * std::max(along, slow) + (u - along * before);
+  return (d - now.normal * now.normal.dot(d)).normalized();
+}
+
+/// Slower than this, m/s, what slides goes on as it did: a small part of what a body gains that
+/// falls by its size. Directions of slower sliding change faster than steps can follow.
+double slow_slip(const TurningGroup& group) {
+  double size = 0.0;
+  for (std::size_t i = 0; i < group.bodies.size(); ++i) {
+    size = std::max(size, group.inertia[i].mass > 0.0 ? group.start.radius[i] : 0.0);
+  }
+  return 1e-5 * std::sqrt(TurningForces(group.start).load() * size);
+}
+
+std::vector<FrictionChoice> directed(const TurningMode& mode, const std::vector<TouchNow>& now,
+                                     double slow) {
+  std::vector<FrictionChoice> choices = mode.choices;
+  for (std::size_t k = 0; k < choices.size(); ++k) {
+    FrictionChoice& c = choices[k];
+    if ((c.does == Does::slides || c.does == Does::begins) && !c.direction.isZero(0.0)) {
+      c.direction = direction(now[k], c.direction, slow);
+    }
+  }
+  return choices;
+}
+
+/// Contact forces as a force of the island.
+class ContactForce final : public Force {
+ public:
+  ContactForce(const TurningGroup& group, const TurningMode& mode)
+      : group_(group), mode_(mode), slow_(slow_slip(group)) {}
+
+  void add(Instant, std::span<const BodyState> bodies, std::span<Wrench> wrenches) const override {
+    const TurningState state = at_states(group_, bodies);
+    TurningForces forces(state);
+    const auto found = forces.solve(directed(mode_, forces.now(), slow_));
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < group_.bodies.size(); ++i) {
+      if (group_.inertia[i].mass > 0.0) {
+        add_to(i, state, forces, found, wrenches[next++]);
+      }
+    }
+  }
+  [[nodiscard]] double potential(Instant, std::span<const BodyState>) const override { return 0.0; }
+  [[nodiscard]] bool conservative() const override { return false; }
+  [[nodiscard]] std::string description() const override { return "what holds bodies in touch"; }
+
+ private:
+  static void add_to(std::size_t i, const TurningState& state, const TurningForces& forces,
+                     const TurningForces::Solution& found, Wrench& wrench) {
+    for (std::size_t k = 0; k < state.touches.size(); ++k) {
+      const Touch& touch = state.touches[k];
+      const TouchNow& now = forces.now()[k];
+      for (const auto& [place, point, sign] :
+           {std::tuple{touch.a, now.point_a, -1.0}, {touch.b, now.point_b, 1.0}}) {
+        if (place == i) {
+          const Vector3 f = sign * found.force[k];
+          wrench.force += f;
+          wrench.torque += (point - state.states[i].pose.position).cross(f);
+        }
+      }
+    }
+  }
+
+  const TurningGroup& group_;
+  const TurningMode& mode_;
+  double slow_;
+};
+
+class Step {
+ public:
+  Step(const TurningGroup& group, const TurningMode& mode, Stepper& stepper, Instant t)
+      : group_(group), mode_(mode), stepper_(stepper), t_(t), slow_(slow_slip(group)) {
+    for (std::size_t i = 0; i < group.bodies.size(); ++i) {
+      if (group.inertia[i].mass > 0.0) {
+        free_.push_back(i);
+        before_.push_back({group.start.states[i].pose, mode.velocities[i]});
+      }
+    }
+  }
+
+  TurningStep run(double longest) {
+    if (!integrate(longest)) {
+      return std::move(step_);
+    }
+    for (std::size_t p = 0; p < group_.pairs.size(); ++p) {
+      const double until = strike_time(p, step_.duration);
+      if (until < step_.duration) {
+        step_.duration = until;
+        step_.end = TurningEnd::strike;
+        step_.pair = p;
+      }
+    }
+    end_mode();
+    finish();
+    return std::move(step_);
+  }
+
+ private:
+  [[nodiscard]] std::vector<BodyState> free_states(double s) const {
+    std::vector<BodyState> states;
+    for (const Motion& motion : raw_) {
+      states.push_back({motion.pose(s), motion.twist(s)});
+    }
+    return states;
+  }
+
+  bool integrate(double longest) {
+    Island island;
+    const ContactForce force(group_, mode_);
+    for (const std::size_t i : free_) {
+      island.bodies.push_back(group_.bodies[i]);
+      island.inertia.push_back(group_.inertia[i]);
+      island.constant_force.push_back(group_.constant_force[i]);
+    }
+    island.forces.push_back(&force);
+    const std::int64_t evaluated = stepper_.evaluations();
+    double h = longest;
+    for (int round = 0; round < most_halvings; ++round) {
+      std::vector<BodyState> states = before_;
+      stepper_.start(island, t_, states);
+      const StepResult result = stepper_.step(island, t_, h, states);
+      step_.evaluations = stepper_.evaluations() - evaluated;
+      if (!result.ok || !(result.advanced > 0.0)) {
+        step_.refusal = "integrator: " + std::string(result.reason);
+        return false;
+      }
+      raw_.assign(free_.size(), {});
+      stepper_.dense_output(raw_);
+      step_.duration = result.advanced;
+      step_.stepped = result.advanced;
+      step_.halved = step_.halved || result.advanced < h;
+      if (keeps_gaps()) {
+        return true;
+      }
+      h = 0.5 * result.advanced;
+      step_.halved = true;
+    }
+    step_.refusal = "no step is short enough to keep what touches in touch";
+    return false;
+  }
+
+  [[nodiscard]] bool keeps_gaps() const {
+    for (int j = 1; j <= samples; ++j) {
+      const TurningState state = at_states(group_, free_states(step_.duration * j / samples));
+      for (std::size_t k = 0; k < state.touches.size(); ++k) {
+        const Touch& touch = state.touches[k];
+        const double gap = look_at(touch, state.states[touch.a], state.states[touch.b]).gap;
+        if (mode_.choices[k].does != Does::opens &&
+            !(std::abs(gap - touch.gap) <= drift * group_.pairs[touch.pair].nearest)) {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  [[nodiscard]] double strike_time(std::size_t p, double duration) const {
+    const TurningPair& pair = group_.pairs[p];
+    SeparationWatch watch{pair, motion_of(pair.a), motion_of(pair.b), {}};
+    for (std::size_t k = 0; k < group_.start.touches.size(); ++k) {
+      const Touch& touch = group_.start.touches[k];
+      if (touch.pair == p && mode_.choices[k].does != Does::opens) {
+        watch.held.push_back(touch);
+      }
+    }
+    return watch.strike_time(duration);
+  }
+
+  [[nodiscard]] Motion motion_of(std::size_t i) const {
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      if (free_[k] == i) {
+        return raw_[k];
+      }
+    }
+    Motion motion = Motion::at_rest(t_, group_.start.states[i].pose);
+    return motion;
+  }
+
+  // --- What ends the mode -----------------------------------------------------------------------
+
+  /// What the mode is at its end for at s; `step`: it is not.
+  [[nodiscard]] TurningEnd ends_at(double s) const {
+    const TurningState state = at_states(group_, free_states(s));
+    TurningForces forces(state);
+    for (std::size_t k = 0; k < state.touches.size(); ++k) {
+      if (stops(mode_.choices[k], forces.now()[k])) {
+        return TurningEnd::forces;
+      }
+    }
+    const auto found = forces.verified(directed(mode_, forces.now(), slow_));
+    double beyond = 0.0;
+    // What opens may close again: that is a strike, watched by its gap.
+    for (std::size_t k = 0; k < state.touches.size(); ++k) {
+      const double closing = -forces.gap_acceleration(k, found.accelerations) / forces.load();
+      if (mode_.choices[k].does == Does::opens && closing >= found.violation) {
+        return rim(state, forces) ? TurningEnd::rim : TurningEnd::step;
+      }
+    }
+    beyond = found.violation;
+    if (beyond > guard) {
+      return TurningEnd::forces;
+    }
+    return rim(state, forces) ? TurningEnd::rim : TurningEnd::step;
+  }
+
+  /// Whether what slides, slides back.
+  [[nodiscard]] bool stops(const FrictionChoice& c, const TouchNow& now) const {
+    return (c.does == Does::slides || c.does == Does::begins) && !c.direction.isZero(0.0) &&
+           c.direction.dot(now.velocity) < -1e-6 * slow_;
+  }
+
+  [[nodiscard]] bool rim(const TurningState&, const TurningForces&) const { return false; }
+
+  void end_mode() {
+    double lo = 0.0;
+    for (int j = 1; j <= samples; ++j) {
+      const double hi = step_.duration * j / samples;
+      if (ends_at(hi) != TurningEnd::step) {
+        return bisect(lo, hi);
+      }
+      lo = hi;
+    }
+  }
+
+  void bisect(double lo, double hi) {
+    for (int k = 0; k < bisections; ++k) {
+      const double middle = 0.5 * (lo + hi);
+      (ends_at(middle) != TurningEnd::step ? hi : lo) = middle;
+    }
+    step_.duration = hi;
+    step_.end = ends_at(hi);
+  }
+
+  // --- What is told -----------------------------------------------------------------------------
+
+  void finish() {
+    const double h = step_.duration;
+    step_.states = group_.start.states;
+    step_.motions.assign(group_.bodies.size(), {});
+    if (!(h > 0.0)) {
+      return;
+    }
+    TurningState end = at_states(group_, free_states(h));
+    std::vector<char> held;
+    for (const FrictionChoice& c : mode_.choices) {
+      held.push_back(c.does != Does::opens ? 1 : 0);
+    }
+    put_at_gaps(end, held);
+    const TurningForces there(end);
+    const std::vector<Twist> velocities = held_velocities(end, there.now(), mode_.choices);
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      const std::size_t i = free_[k];
+      BodyState& state = step_.states[i];
+      state.pose = end.states[i].pose;
+      state.twist = velocities[i];
+      raw_[k].duration = h;
+      bend_to(raw_[k], h, before_[k], state);
+      step_.motions[i] = raw_[k];
+    }
+    book();
+  }
+
+  /// Power of the contact forces at 8 nodes, and the polynomials through it, integrated.
+  void book() {
+    constexpr int nodes = 8;
+    using Square = Eigen::Matrix<double, nodes, nodes>;
+    Square powers;
+    Eigen::MatrixXd of_body =
+        Eigen::MatrixXd::Zero(nodes, static_cast<Eigen::Index>(group_.bodies.size()));
+    Eigen::MatrixXd of_pair =
+        Eigen::MatrixXd::Zero(nodes, static_cast<Eigen::Index>(group_.pairs.size()));
+    for (int j = 0; j < nodes; ++j) {
+      const double u = 0.5 * (1.0 - cosine(M_PI * (2 * j + 1) / (2.0 * nodes)));
+      for (int k = 0; k < nodes; ++k) {
+        powers(j, k) = k == 0 ? 1.0 : powers(j, k - 1) * u;
+      }
+      power_at(u * step_.duration, of_body.row(j), of_pair.row(j));
+    }
+    const Eigen::PartialPivLU<Square> interpolate(powers);
+    const auto integrated = [&](const Eigen::VectorXd& values) {
+      const Eigen::VectorXd c = interpolate.solve(values);
+      Polynomial<3> work;
+      work.resize(nodes);
+      double scale = 1.0;
+      for (int k = 0; k < nodes; ++k) {
+        work[k + 1].x() = c[k] / ((k + 1) * scale);
+        scale *= step_.duration;
+      }
+      return work;
+    };
+    for (Eigen::Index i = 0; i < of_body.cols(); ++i) {
+      step_.worked.push_back(integrated(of_body.col(i)));
+    }
+    for (Eigen::Index p = 0; p < of_pair.cols(); ++p) {
+      step_.rubbed.push_back(integrated(of_pair.col(p)));
+    }
+    step_.leaked.resize(nodes);
+    for (int k = 0; k <= nodes; ++k) {
+      for (const auto& work : step_.worked) {
+        step_.leaked[k].x() += work[k].x();
+      }
+      for (const auto& work : step_.rubbed) {
+        step_.leaked[k].x() -= work[k].x();
+      }
+    }
+  }
+
+  template <typename Bodies, typename Pairs>
+  void power_at(double s, Bodies of_body, Pairs of_pair) const {
+    const TurningState state = at_states(group_, free_states(s));
+    TurningForces forces(state);
+    const auto choices = directed(mode_, forces.now(), slow_);
+    const auto found = forces.solve(choices);
+    for (std::size_t k = 0; k < state.touches.size(); ++k) {
+      const Touch& touch = state.touches[k];
+      const TouchNow& now = forces.now()[k];
+      const auto power = [&](std::size_t i, const Vector3& point) {
+        const BodyState& at = state.states[i];
+        return found.force[k].dot(at.twist.at(point, at.pose.position));
+      };
+      of_body[static_cast<Eigen::Index>(touch.a)] -= power(touch.a, now.point_a);
+      of_body[static_cast<Eigen::Index>(touch.b)] += power(touch.b, now.point_b);
+      const bool slides = choices[k].does == Does::slides || choices[k].does == Does::begins;
+      if (slides && !choices[k].direction.isZero(0.0)) {
+        const Vector3 along = found.force[k] - now.normal * now.normal.dot(found.force[k]);
+        of_pair[static_cast<Eigen::Index>(touch.pair)] += std::min(along.dot(now.velocity), 0.0);
+      }
+    }
+  }
+
+  const TurningGroup& group_;
+  const TurningMode& mode_;
+  Stepper& stepper_;
+  Instant t_;
+  double slow_;
+  std::vector<std::size_t> free_;
+  std::vector<BodyState> before_;
+  std::vector<Motion> raw_;  ///< by free body
+  TurningStep step_;
+};
+
+}  // namespace
+
+TurningStep turning_step(const TurningGroup& group, const TurningMode& mode, Stepper& stepper,
+                         Instant t, double longest) {
+  return Step(group, mode, stepper, t).run(longest);
+}
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,71 @@
+#pragma once
+
+#include "core/contacts/turning_mode.hpp"
+#include "core/event.hpp"
+#include "core/force.hpp"
+#include "core/stepper.hpp"
+
+#include <string>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+
+/// Two bodies of a group that touch, as their separation is watched: some plane, of a face that
+/// they touch with or through a touch, has all corners of one on one side and of the other on the
+/// other. That proves that they do not overlap, whatever the forces are.
+struct TurningPair {
+  std::size_t a = 0;  ///< places in the group
+  std::size_t b = 0;
+  std::vector<TouchFeature> corners_a;
+  std::vector<TouchFeature> corners_b;
+  std::vector<TouchFeature>
+      planes_a;  ///< of faces of a in touch, with the corners of b beyond them
+  std::vector<TouchFeature> planes_b;
+  double nearest = 0.0;  ///< what comes nearer than this strikes, m; held gaps are no smaller
+};
+
+/// A group of bodies that turn while they touch, and what moves them.
+struct TurningGroup {
+  TurningState start;
+  std::vector<BodyIndex> bodies;        ///< by place
+  std::vector<BodyInertia> inertia;     ///< by place; mass <= 0: it stays where it is
+  std::vector<Vector3> constant_force;  ///< by place, N
+  std::vector<TurningPair> pairs;       ///< as `Touch::pair` counts
+};
+
+/// Why a step of a group ended where it did.
+enum class TurningEnd {
+  step,    ///< nothing happened
+  forces,  ///< a force would leave its cone, or what slides stops
+  rim,     ///< a touch comes to the rim of the face that it is on
+  strike,  ///< another corner of a pair comes down
+};
+
+/// A step of a group of bodies that turn while they touch.
+struct TurningStep {
+  std::string refusal;    ///< why there is none; empty: there is
+  double duration = 0.0;  ///< s
+  double stepped = 0.0;   ///< s; how long it was before it was cut off where something ends
+  bool halved = false;    ///< what was asked for was too long
+  TurningEnd end = TurningEnd::step;
+  std::size_t pair = 0;               ///< that strikes
+  std::vector<Motion> motions;        ///< by place; of free bodies only
+  std::vector<BodyState> states;      ///< by place, at the end
+  std::vector<Polynomial<3>> worked;  ///< by place: x, work of contact forces on the body, J
+  std::vector<Polynomial<3>> rubbed;  ///< by pair: x, work of friction that slides, J, <= 0
+  Polynomial<3> leaked;               ///< x: what they gave that is no friction: truncation, J
+  std::int64_t evaluations = 0;
+};
+
+/// Goes on for at most `longest`, s, in the mode that was found: the stepper solves the
+/// index-reduced equations, contact forces being the last force of the island; what it is off the
+/// gaps is taken out at the end of the step, positions first and then velocities, and its motions
+/// are bent to that. The step is shortened until no held gap is off by more than a small part of
+/// what it is. What ends the mode is looked for along these motions: corners that come down between
+/// bounds of their accelerations, forces at 16 points and then by bisection.
+[[nodiscard]] TurningStep turning_step(const TurningGroup& group, const TurningMode& mode,
+                                       Stepper& stepper, Instant t, double longest);
+
+}  // namespace core
+}  // namespace kairos

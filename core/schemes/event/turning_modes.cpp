@@ -1,0 +1,325 @@
+// What `EventModes` does with groups whose bodies turn while they touch.
+#include "core/schemes/event/gathered_group.hpp"
+#include "core/schemes/event/mode_guards.hpp"
+#include "core/schemes/event/turning_group.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+/// What comes nearer than this part of what counts as touch strikes; gaps that are less than half
+/// of that are made as large.
+constexpr double least_gap = 1.0 / 16.0;
+/// Infinite friction: as this, so that what is hardly pressed any more may slide.
+constexpr double rough = 1e6;
+/// Steps that are shorter than this part of a frame, so many in a row, get nowhere.
+constexpr double short_step = 1e-4;
+constexpr int most_short_steps = 5000;
+
+}  // namespace
+
+/// Whether what holds the two is pressed.
+bool EventModes::presses(const Gathered& found, const Turning& turning, const BodyPair& pair) {
+  for (std::size_t k = 0; k < turning.mode.choices.size(); ++k) {
+    const auto& [a, b] = found.pairs[turning.group.start.touches[k].pair];
+    const bool same =
+        (pair.first == a && pair.second == b) || (pair.first == b && pair.second == a);
+    if (same && !turning.mode.forces.force[k].isZero(0.0)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, const Adopt& adopt,
+                                const Wish& asked) {
+  if (!stepper_) {
+    return false;
+  }
+  const std::string flat = why_not_;
+  Wish wish = asked;
+  wish.turning = true;
+  Gathered found = gather(seeds, t, wish);
+  Turning turning;
+  why_not_ = found.refusal.empty() ? add_touches(found, turning) : found.refusal;
+  if (!why_not_.empty()) {
+    return false;
+  }
+  lift(found, turning);
+  if (turning.group.start.touches.empty()) {
+    why_not_ = flat;
+    turning.mode.velocities = found.group.velocities;
+    return turned(seeds) && !asked.pressed && !asked.unloaded && fly(found, turning, t, adopt);
+  }
+  double fastest = 0.0;
+  for (std::size_t k = 0; k < found.bodies.size(); ++k) {
+    const Twist& v = found.states[k].twist;
+    fastest = std::max(fastest, v.linear.norm() + v.angular.norm() * found.group.radius[k]);
+  }
+  const double still =
+      TurningForces(turning.group.start).load() * found.group.instant + 64.0 * epsilon * fastest;
+  turning.mode = turning_mode(turning.group.start, still);
+  why_not_ = turning.mode.refusal;
+  if (!why_not_.empty()) {
+    return false;
+  }
+  if (turning.mode.flies) {
+    why_not_ = "nothing presses";
+    return turned(seeds) && !asked.pressed && !asked.unloaded && fly(found, turning, t, adopt);
+  }
+  const auto& forces = turning.mode.forces.force;
+  if (std::all_of(forces.begin(), forces.end(), [](const Vector3& f) { return f.isZero(0.0); })) {
+    why_not_ = "nothing presses";
+    return false;
+  }
+  if (asked.pressed && !presses(found, turning, *asked.pressed)) {
+    why_not_ = "nothing presses";
+    return false;
+  }
+  const double frame = run_.options.step > 0.0 ? run_.options.step : run_.mean_frame;
+  if (creeps(found)) {
+    why_not_ = "what begins to slide, or stops, turns its direction faster than steps can follow";
+    return false;
+  }
+  const double longest = std::min({frame, run_.epoch_end - t, next_step(found)});
+  const std::unique_ptr<Stepper> stepper = stepper_(longest);
+  turning.step = turning_step(turning.group, turning.mode, *stepper, t, longest);
+  why_not_ = turning.step.refusal;
+  if (why_not_.empty() && !(turning.step.duration > 0.0)) {
+    why_not_ = "a corner of a body in touch is to strike at once";
+  }
+  if (!why_not_.empty()) {
+    return false;
+  }
+  ++run_.cost.steps;
+  run_.cost.right_hand_sides += turning.step.evaluations;
+  carry_on(found, turning, t, adopt);
+  return true;
+}
+
+/// Whether some of these have turned while they touch.
+bool EventModes::turned(std::span<const BodyIndex> bodies) {
+  return std::any_of(bodies.begin(), bodies.end(), [&](BodyIndex i) {
+    const auto& partners = graph_.partners(i);
+    return std::any_of(partners.begin(), partners.end(),
+                       [&](BodyIndex j) { return graph_.find(i, j)->turns; });
+  });
+}
+
+/// Whether the steps of a group get nowhere.
+bool EventModes::creeps(const Gathered& found) {
+  return std::any_of(found.pairs.begin(), found.pairs.end(), [&](const BodyPair& pair) {
+    const Patch* const patch = graph_.find(pair.first, pair.second);
+    return patch != nullptr && patch->short_steps > most_short_steps;
+  });
+}
+
+/// How long the next step of a group may be, as its last ones tell, s.
+double EventModes::next_step(const Gathered& found) {
+  double longest = std::numeric_limits<double>::infinity();
+  for (const auto& [a, b] : found.pairs) {
+    const Patch* const patch = graph_.find(a, b);
+    if (patch != nullptr && patch->step > 0.0) {
+      longest = std::min(longest, patch->step);
+    }
+  }
+  return longest;
+}
+
+/// The touches that are at rest along their normals, and the planes between bodies; why there are
+/// none.
+std::string EventModes::add_touches(Gathered& found, Turning& turning) const {
+  TurningGroup& group = turning.group;
+  if (found.driven) {
+    return "'" + run_.model.body(*found.driven).name + "' is driven, and what touches it turns";
+  }
+  group.start.bodies = found.group.bodies;
+  group.start.states = found.states;
+  group.start.loads = found.group.loads;
+  group.start.radius = found.group.radius;
+  group.bodies = found.bodies;
+  for (const BodyIndex i : found.bodies) {
+    const bool free = run_.model.is_free(i);
+    group.inertia.push_back(free ? run_.model.inertia(i) : BodyInertia{});
+    group.constant_force.push_back(free ? motions_.steady_force(i) : Vector3(Vector3::Zero()));
+  }
+  for (std::size_t p = 0; p < found.pairs.size(); ++p) {
+    const auto [a, b] = found.pairs[p];
+    const GroupPatch& patch = found.group.patches[p];
+    const ContactManifold& m = patch.manifold;
+    if (!patch.drift.isZero(0.0)) {
+      return "a body turns on a belt";
+    }
+    auto corners_a = corners_of(run_.model.shape(a));
+    auto corners_b = corners_of(run_.model.shape(b));
+    const Pose& at_a = found.states[patch.a].pose;
+    const Pose& at_b = found.states[patch.b].pose;
+    if (!corners_a || !corners_b) {
+      return fmt::format("{} touch, one turns, and its shape is round along a rim",
+                         run_.names(a, b));
+    }
+    TurningPair pair{patch.a,
+                     patch.b,
+                     std::move(*corners_a),
+                     std::move(*corners_b),
+                     {},
+                     {},
+                     least_gap * predictor_.touching_gap(a, b)};
+    const Vector3& middle = m.points[0].position;
+    const Vector3 half = 0.5 * m.points[0].gap * m.normal;
+    if (m.face_of_a) {
+      pair.planes_a.push_back({TouchFeature::Kind::plane, at_a.to_body(middle - half),
+                               at_a.orientation.conjugate() * m.normal, 0.0});
+    }
+    if (m.face_of_b) {
+      pair.planes_b.push_back({TouchFeature::Kind::plane, at_b.to_body(middle + half),
+                               at_b.orientation.conjugate() * -m.normal, 0.0});
+    }
+    for (std::size_t k = 0; k < m.size; ++k) {
+      auto touch = touch_at(m, k, run_.model.shape(a), at_a, run_.model.shape(b), at_b);
+      if (!touch) {
+        return fmt::format("{} touch where no face, edge and corner is known to", run_.names(a, b));
+      }
+      touch->a = patch.a;
+      touch->b = patch.b;
+      touch->friction = std::min(patch.friction, rough);
+      touch->rough = std::isinf(patch.friction);
+      touch->rest_speed = patch.rest_speed;
+      touch->pair = p;
+      const double gap = look_at(*touch, found.states[patch.a], found.states[patch.b]).gap;
+      touch->gap = gap;
+      group.start.touches.push_back(*touch);
+    }
+    group.pairs.push_back(std::move(pair));
+  }
+  return {};
+}
+
+/// Gaps that are too small to be held are made larger; then touches are those alone that are at
+/// rest along their normals.
+void EventModes::lift(Gathered& found, Turning& turning) {
+  TurningState& start = turning.group.start;
+  raise(found, turning);
+  std::erase_if(start.touches, [&](const Touch& touch) {
+    const TouchNow now = look_at(touch, start.states[touch.a], start.states[touch.b]);
+    return std::abs(now.normal.dot(now.velocity)) > found.group.patches[touch.pair].rest_speed;
+  });
+}
+
+void EventModes::raise(Gathered& found, Turning& turning) {
+  TurningState& start = turning.group.start;
+  const std::vector<char> all(start.touches.size(), 1);
+  std::vector<double> missing(turning.group.pairs.size(), 0.0);
+  for (const Touch& touch : start.touches) {
+    const double nearest = turning.group.pairs[touch.pair].nearest;
+    if (touch.gap < 0.5 * nearest) {
+      missing[touch.pair] = std::max(missing[touch.pair], nearest - touch.gap);
+    }
+  }
+  if (std::all_of(missing.begin(), missing.end(), [](double x) { return x == 0.0; })) {
+    return;
+  }
+  for (Touch& touch : start.touches) {
+    touch.gap += missing[touch.pair];
+  }
+  put_at_gaps(start, all);
+  for (Touch& touch : start.touches) {
+    touch.gap = look_at(touch, start.states[touch.a], start.states[touch.b]).gap;
+  }
+  for (std::size_t k = 0; k < found.bodies.size(); ++k) {
+    if (run_.model.is_free(found.bodies[k])) {
+      found.states[k].pose = start.states[k].pose;
+      start.bodies[k] = group_body(turning.group.inertia[k], start.states[k].pose);
+    }
+  }
+}
+
+/// Nothing holds the group any longer.
+bool EventModes::fly(const Gathered& found, const Turning& turning, Instant t, const Adopt& adopt) {
+  FlatMode mode;
+  mode.turns = true;
+  mode.velocities = turning.mode.velocities;
+  mode.accelerations = found.group.loads;
+  mode.kept.assign(found.pairs.size(), 0);
+  mode.slip.assign(found.pairs.size(), Slip::none);
+  book_lift(found, t);
+  commit(found, mode, t, adopt);
+  return true;
+}
+
+/// What gaps that were made larger did to the energy.
+void EventModes::book_lift(const Gathered& found, Instant t) {
+  for (std::size_t k = 0; k < found.bodies.size(); ++k) {
+    const BodyIndex i = found.bodies[k];
+    if (run_.model.is_free(i)) {
+      motions_.book(i, t);
+      const BodyState& before = motions_.now(i);
+      const BodyState& after = found.states[k];
+      run_.account.moved(i, after.pose.position - before.pose.position);
+      run_.ledger.add(EnergyLine::position_correction, run_.account.gained(i, before, after));
+    }
+  }
+}
+
+/// The group moves on as the step found, and is looked at again where that ends.
+void EventModes::carry_on(const Gathered& found, const Turning& turning, Instant t,
+                          const Adopt& adopt) {
+  const std::size_t n = found.pairs.size();
+  FlatMode mode;
+  mode.turns = true;
+  mode.velocities = turning.mode.velocities;
+  mode.accelerations = turning.mode.forces.accelerations;
+  mode.kept.assign(n, 0);
+  mode.pressing.assign(n, 0.0);
+  mode.rate.assign(n, 0.0);
+  mode.slip.assign(n, Slip::none);
+  mode.force.assign(n, Vector3::Zero());
+  for (std::size_t k = 0; k < turning.mode.choices.size(); ++k) {
+    const FrictionChoice& c = turning.mode.choices[k];
+    const Touch& touch = turning.group.start.touches[k];
+    using Does = FrictionChoice::Does;
+    if (c.does == Does::opens) {
+      continue;
+    }
+    const std::size_t p = touch.pair;
+    mode.kept[p] = 1;
+    mode.force[p] += turning.mode.forces.force[k];
+    mode.pressing[p] += found.group.patches[p].manifold.normal.dot(turning.mode.forces.force[k]);
+    if (touch.friction > 0.0) {
+      const Slip now = c.does == Does::sticks   ? Slip::sticks
+                       : c.does == Does::begins ? Slip::begins
+                                                : Slip::slides;
+      mode.slip[p] = std::max(mode.slip[p], now);
+    }
+  }
+  book_lift(found, t);
+  commit(found, mode, t, adopt, nullptr, &turning);
+  for (const auto& [a, b] : found.pairs) {
+    if (Patch* const patch = graph_.find(a, b)) {
+      const double tried = turning.step.stepped;
+      patch->short_steps = tried < short_step * run_.mean_frame ? patch->short_steps + 1 : 0;
+      patch->step = turning.step.halved ? tried : std::max(patch->step, 2.0 * tried);
+    }
+  }
+  const Instant end = t + turning.step.duration;
+  if (!(end < run_.epoch_end)) {
+    return;
+  }
+  const bool strikes = turning.step.end == TurningEnd::strike;
+  const auto& [a, b] = found.pairs[strikes ? turning.step.pair : 0];
+  if (strikes) {
+    run_.agenda.push(end, Due::impact, a, b, 0.0, true);
+  } else {
+    run_.agenda.push(end, Due::mode_ends, a, b);
+  }
+}
+
+}  // namespace core
+}  // namespace kairos
