@@ -189,8 +189,7 @@ TEST_CASE("overhang of four boxes: stands at 0.999 of 25/24 of a length, tips at
       check_whole(sim, text);
     } else {
       REQUIRE(sim.result.status == RunStatus::stopped);
-      CHECK(sim.result.end.seconds > 0.1);  // it tips, until boxes begin to slide off each other
-      CHECK(sim.result.state[1].twist.angular.z() < -1e-3);
+      CHECK(sim.result.reason.find("bodies that touch each other turn") != std::string::npos);
       CHECK(sim.result.reason.find("allowed: ") != std::string::npos);
     }
   }

@@ -73,7 +73,7 @@ void EventContacts::settle_anew(BodyIndex i, Instant t) {
   const std::array<BodyIndex, 1> seed{i};
   const std::vector<BodyIndex> bodies = modes_.group(seed);
   modes_.bring_group(bodies, t);
-  if (settle(bodies, t)) {
+  if (settle(bodies, t, {.may_turn = true})) {
     return;
   }
   const std::string why = unkept();
@@ -112,7 +112,7 @@ void EventContacts::stay(BodyIndex a, BodyIndex b, Instant t) {
     return depart(a, b, t);
   }
   const Contact contact = contact_at(a, b, t, 0.0);
-  if (lands(a, b, contact, t) || settle(pair, t, {.unloaded = true})) {
+  if (lands(a, b, contact, t) || settle(pair, t, {.unloaded = true, .may_turn = true})) {
     return;
   }
   if (meet_elsewhere(a, b, t)) {
@@ -125,7 +125,7 @@ void EventContacts::stay(BodyIndex a, BodyIndex b, Instant t) {
 /// Two in touch may come together elsewhere than where they are nearest: an impact there.
 bool EventContacts::meet_elsewhere(BodyIndex a, BodyIndex b, Instant t) {
   const std::array<BodyPair, 1> both{BodyPair{a, b}};
-  const auto worst = modes_.worst_approach({}, both);
+  const auto worst = modes_.worst_approach({}, both, true);
   if (worst) {
     Event event{.time = t, .kind = EventKind::impact, .a = a, .b = b};
     event.contact = worst->contact;
@@ -162,7 +162,7 @@ void EventContacts::touch(BodyIndex a, BodyIndex b, const Contact& contact, Inst
     return;
   }
   if (accumulation_.stalls(a, b, t, least_progress * run_.epoch)) {
-    if (settle(pair, t, {.unloaded = true}) || meet_elsewhere(a, b, t)) {
+    if (settle(pair, t, {.unloaded = true, .may_turn = true}) || meet_elsewhere(a, b, t)) {
       return;
     }
     depart(a, b, t);
@@ -196,7 +196,7 @@ void EventContacts::look_again(BodyIndex a, BodyIndex b, Instant t, double patie
   const double window = std::min({motions_.of(a).duration, motions_.of(b).duration, run_.epoch});
   if (accumulation_.stalls(a, b, t, least_progress * window)) {
     const std::array<BodyIndex, 2> pair{a, b};
-    if (settle(pair, t, {.unloaded = true}) || meet_elsewhere(a, b, t)) {
+    if (settle(pair, t, {.unloaded = true, .may_turn = true}) || meet_elsewhere(a, b, t)) {
       return;
     }
     return run_.stop(t, fmt::format("accumulation: whether {} touch is undecided again and again, "
@@ -451,7 +451,7 @@ void EventContacts::cross_field(BodyIndex a, BodyIndex b, Instant t, bool enteri
 }
 
 void EventContacts::Touching::persist(Archive& archive) { archive(settled, contact_begins); }
-void EventContacts::persist(Archive& archive) { archive(accumulation_, bodies_); }
+void EventContacts::persist(Archive& archive) { archive(accumulation_, bodies_, modes_); }
 
 }  // namespace core
 }  // namespace kairos

@@ -141,7 +141,8 @@ void EventContacts::meet(Event& event, Instant t) {
                {.unloaded = unite,
                 .unite = unite,
                 .remaining = finding.remaining,
-                .pairs = finding.pairs})) {
+                .pairs = finding.pairs,
+                .may_turn = finding.kind != Kind::collapse})) {
       return;
     }
     if (finding.kind == Kind::collapse) {
@@ -434,7 +435,8 @@ void EventContacts::go_on_from(std::span<const BodyIndex> bodies, const BodyPair
              {.unloaded = unite,
               .unite = unite,
               .remaining = finding.remaining,
-              .pairs = finding.pairs})) {
+              .pairs = finding.pairs,
+              .may_turn = finding.kind != Kind::none && finding.kind != Kind::collapse})) {
     return;
   }
   set_free(bodies, t);

@@ -262,7 +262,8 @@ std::optional<EventModes::Approach> EventModes::fastest_points(BodyIndex a, Body
   return Approach{a, b, middle, -fastest};
 }
 
-std::optional<EventModes::Approach> EventModes::approach(BodyIndex a, BodyIndex b) const {
+std::optional<EventModes::Approach> EventModes::approach(BodyIndex a, BodyIndex b,
+                                                         bool corners_too) const {
   if (const Patch* const patch = graph_.find(a, b); patch != nullptr && patch->turns) {
     const std::optional<Approach> found = landing(a, b);
     const double rest = rest_speed(a, b, motions_.now(a), motions_.now(b), {});
@@ -281,7 +282,7 @@ std::optional<EventModes::Approach> EventModes::approach(BodyIndex a, BodyIndex 
   const Overlap o = run_.detector.overlap(shape_a, at_a.pose, shape_b, at_b.pose);
   Contact contact{o.point, o.normal, o.gap};
   double rate = normal_velocity(contact, at_a, at_b);
-  if (rate >= -slow) {
+  if (rate >= -slow && corners_too) {
     if (const std::optional<Approach> corners = fastest_points(a, b);
         corners && -corners->speed < std::min(rate, -slow)) {
       return corners;
@@ -290,8 +291,9 @@ std::optional<EventModes::Approach> EventModes::approach(BodyIndex a, BodyIndex 
   return rate < -slow ? std::optional(Approach{a, b, contact, -rate}) : std::nullopt;
 }
 
-std::optional<EventModes::Approach> EventModes::worst_approach(
-    std::span<const BodyIndex> bodies, std::span<const BodyPair> others) const {
+std::optional<EventModes::Approach> EventModes::worst_approach(std::span<const BodyIndex> bodies,
+                                                               std::span<const BodyPair> others,
+                                                               bool corners_too) const {
   std::vector<BodyPair> pairs(others.begin(), others.end());
   for (const BodyIndex i : bodies) {
     for (const BodyIndex j : graph_.partners(i)) {
@@ -306,7 +308,8 @@ std::optional<EventModes::Approach> EventModes::worst_approach(
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   std::optional<Approach> worst;
   for (const auto& [a, b] : pairs) {
-    const std::optional<Approach> found = approach(a, b);
+    const std::optional<Approach> found =
+        approach(a, b, corners_too || has_turned(std::array{a, b}));
     if (found && (!worst || found->speed > worst->speed)) {
       worst = found;
     }

@@ -19,7 +19,8 @@ EventModes::EventModes(EventRun& run, EventMotions& motions, EventPredictor& pre
       predictor_(predictor),
       accumulation_(accumulation),
       graph_(graph),
-      stepper_(std::move(stepper)) {}
+      stepper_(std::move(stepper)),
+      has_turned_(run.model.size()) {}
 
 bool EventModes::settle(std::span<const BodyIndex> seeds, Instant t, const Adopt& adopt,
                         const Wish& wish) {
@@ -34,6 +35,9 @@ bool EventModes::settle(std::span<const BodyIndex> seeds, Instant t, const Adopt
   if (!why_not_.empty()) {
     return false;
   }
+  if (wish.turning_only && !has_turned(seeds)) {
+    return false;
+  }
   if (wish.turning_only) {
     why_not_ = contact_mode(found.group, {wish.unloaded, wish.unite}).refusal;
     if (why_not_.empty()) {
@@ -42,7 +46,7 @@ bool EventModes::settle(std::span<const BodyIndex> seeds, Instant t, const Adopt
   } else if (settle_flat(std::move(found), t, adopt, wish)) {
     return true;
   }
-  return settle_turning(seeds, t, adopt, wish);
+  return (wish.may_turn || has_turned(seeds)) && settle_turning(seeds, t, adopt, wish);
 }
 
 /// Nothing turns but what may.

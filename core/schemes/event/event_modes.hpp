@@ -41,6 +41,8 @@ class EventModes {
     bool held_only = false;                ///< impact: only what is held, and these two
     bool turning = false;                  ///< pairs of which some points are at rest, too
     bool turning_only = false;             ///< only if it turns
+    /// What cannot go on otherwise may turn: the run would stop. What has turned may always.
+    bool may_turn = false;
   };
   /// Settles all that touches the seeds at t, whose states are at `now`; false, and nothing has
   /// changed, where they cannot go on in touch. `why_not` then says why.
@@ -58,7 +60,8 @@ class EventModes {
   void bring_group(std::span<const BodyIndex> bodies, Instant t);
   /// The patch that approaches fastest among those of the bodies at `now` and the others, with the
   /// point at which it does: the centroid, or where that does not approach a point of it; nothing
-  /// where all are slower than they may be at rest.
+  /// where all are slower than they may be at rest. `corners_too`: also where one of its points
+  /// does, though its middle does not; always of what has turned.
   struct Approach {
     BodyIndex a = 0;
     BodyIndex b = 0;
@@ -71,7 +74,8 @@ class EventModes {
   /// Whether a contact has no speed along its normal that is worth a hop.
   [[nodiscard]] bool stays(BodyIndex a, BodyIndex b, const Contact& contact) const;
   [[nodiscard]] std::optional<Approach> worst_approach(std::span<const BodyIndex> bodies,
-                                                       std::span<const BodyPair> others) const;
+                                                       std::span<const BodyPair> others,
+                                                       bool corners_too = false) const;
   /// A contact that begins or ends, to be told when its bodies have their new motions.
   struct Change {
     EventKind kind = EventKind::contact_ends;
@@ -104,6 +108,8 @@ class EventModes {
   /// Groups that move are looked at for one epoch only.
   [[nodiscard]] std::vector<BodyIndex> moving() const;
 
+  void persist(Archive& archive);
+
  private:
   struct Gathered;
   /// A step of a group that turns.
@@ -111,7 +117,7 @@ class EventModes {
   [[nodiscard]] Gathered gather(std::span<const BodyIndex> seeds, Instant t, const Wish& wish);
   [[nodiscard]] double rest_speed(BodyIndex a, BodyIndex b, const BodyState& at_a,
                                   const BodyState& at_b, const Wish& wish) const;
-  [[nodiscard]] std::optional<Approach> approach(BodyIndex a, BodyIndex b) const;
+  [[nodiscard]] std::optional<Approach> approach(BodyIndex a, BodyIndex b, bool corners_too) const;
   [[nodiscard]] std::optional<Approach> fastest_points(BodyIndex a, BodyIndex b) const;
   [[nodiscard]] Twist load(BodyIndex i, const BodyState& state) const;
   /// One body on one surface, along a motion that is no parabola.
@@ -132,6 +138,9 @@ class EventModes {
   [[nodiscard]] double next_step(const Gathered& found);
   [[nodiscard]] bool creeps(const Gathered& found);
   [[nodiscard]] bool turned(std::span<const BodyIndex> bodies);
+  [[nodiscard]] bool has_turned(std::span<const BodyIndex> bodies) const;
+  [[nodiscard]] std::string why_not_turn(const Gathered& found, Instant t) const;
+  void count_step(const Gathered& found, Instant t);
   void lift(Gathered& found, Turning& turning);
   void raise(Gathered& found, Turning& turning);
   [[nodiscard]] bool fly(const Gathered& found, const Turning& turning, Instant t,
@@ -152,6 +161,15 @@ class EventModes {
   ContactGraph& graph_;
   std::function<std::unique_ptr<Stepper>(double)> stepper_;  ///< see `Method::contact_stepper`
   std::string why_not_;
+  /// Whether a body has turned while it touched, and its steps in the frame in which it last did.
+  struct Turned {
+    bool once = false;
+    double frame = 0.0;  ///< counted from the start of the run
+    int steps = 0;
+
+    void persist(Archive& archive);
+  };
+  std::vector<Turned> has_turned_;
 };
 
 }  // namespace core

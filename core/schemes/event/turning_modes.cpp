@@ -21,7 +21,11 @@ constexpr double least_gap = 1.0 / 16.0;
 constexpr double rough = 1e6;
 /// Steps that are shorter than this part of a frame, so many in a row, get nowhere.
 constexpr double short_step = 1e-4;
-constexpr int most_short_steps = 5000;
+constexpr int most_short_steps = 500;
+/// A body that turns has so many steps in a frame at most.
+constexpr int most_steps = 1000;
+/// So many free bodies of a group may turn: forces of more are found too slowly.
+constexpr std::ptrdiff_t most_bodies = 1;
 
 }  // namespace
 
@@ -48,7 +52,10 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
   wish.turning = true;
   Gathered found = gather(seeds, t, wish);
   Turning turning;
-  why_not_ = found.refusal.empty() ? add_touches(found, turning) : found.refusal;
+  why_not_ = found.refusal.empty() ? why_not_turn(found, t) : found.refusal;
+  if (why_not_.empty()) {
+    why_not_ = add_touches(found, turning);
+  }
   if (!why_not_.empty()) {
     return false;
   }
@@ -98,10 +105,50 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
   if (!why_not_.empty()) {
     return false;
   }
+  count_step(found, t);
   ++run_.cost.steps;
   run_.cost.right_hand_sides += turning.step.evaluations;
   carry_on(found, turning, t, adopt);
   return true;
+}
+
+/// Whether one of these has turned while it touched, now or before.
+bool EventModes::has_turned(std::span<const BodyIndex> bodies) const {
+  return std::any_of(bodies.begin(), bodies.end(),
+                     [&](BodyIndex i) { return has_turned_[i].once; });
+}
+
+/// Why these are not even tried: there are too many of them, or they have had their share of work.
+std::string EventModes::why_not_turn(const Gathered& found, Instant t) const {
+  const auto free = std::count_if(found.bodies.begin(), found.bodies.end(),
+                                  [&](BodyIndex i) { return run_.model.is_free(i); });
+  if (free > most_bodies) {
+    return "bodies that touch each other turn";
+  }
+  const double frame = std::floor(t.seconds / run_.mean_frame);
+  for (const BodyIndex i : found.bodies) {
+    if (has_turned_[i].frame == frame && has_turned_[i].steps >= most_steps) {
+      return fmt::format("'{}', which turns, takes more than {} steps in a frame",
+                         run_.model.body(i).name, most_steps);
+    }
+  }
+  return {};
+}
+
+void EventModes::count_step(const Gathered& found, Instant t) {
+  const double frame = std::floor(t.seconds / run_.mean_frame);
+  for (const BodyIndex i : found.bodies) {
+    if (run_.model.is_free(i)) {
+      Turned& turned = has_turned_[i];
+      turned = {true, frame, turned.once && turned.frame == frame ? turned.steps + 1 : 1};
+    }
+  }
+}
+
+void EventModes::Turned::persist(Archive& archive) { archive(once, frame, steps); }
+void EventModes::persist(Archive& archive) {
+  archive(has_turned_);
+  archive.require(has_turned_.size() == run_.model.size());
 }
 
 /// Whether some of these have turned while they touch.
