@@ -143,6 +143,7 @@ class EventModes {
   void count_step(const Gathered& found, Instant t);
   void lift(Gathered& found, Turning& turning);
   void raise(Gathered& found, Turning& turning);
+  [[nodiscard]] bool has_room(const Gathered& found, Instant t);
   [[nodiscard]] bool fly(const Gathered& found, const Turning& turning, Instant t,
                          const Adopt& adopt);
   void book_lift(const Gathered& found, Instant t);

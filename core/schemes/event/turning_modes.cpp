@@ -60,6 +60,10 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
     return false;
   }
   lift(found, turning);
+  if (!has_room(found, t)) {
+    why_not_ = "a body turns, and another is too near to it";
+    return false;
+  }
   if (turning.group.start.touches.empty()) {
     why_not_ = flat;
     turning.mode.velocities = found.group.velocities;
@@ -286,6 +290,32 @@ void EventModes::raise(Gathered& found, Turning& turning) {
       start.bodies[k] = group_body(turning.group.inertia[k], start.states[k].pose);
     }
   }
+}
+
+/// Whether bodies whose gaps were made larger stay clear of what is no part of the group.
+bool EventModes::has_room(const Gathered& found, Instant t) {
+  std::vector<BodyIndex> near;
+  for (std::size_t k = 0; k < found.bodies.size(); ++k) {
+    const BodyIndex i = found.bodies[k];
+    const Pose& before = motions_.now(i).pose;
+    const Pose& after = found.states[k].pose;
+    if (!run_.model.is_free(i) || (before.position == after.position &&
+                                   before.orientation.coeffs() == after.orientation.coeffs())) {
+      continue;
+    }
+    near.clear();
+    predictor_.solids_near(i, near);
+    for (const BodyIndex j : near) {
+      const Shape& own = run_.model.shape(i);
+      const Shape& other = run_.model.shape(j);
+      const Pose there = found.has(j) ? found.states[found.place(j)].pose : motions_.at(j, t).pose;
+      const double gap = run_.detector.overlap(own, after, other, there).gap;
+      if (gap < 0.0 && gap < run_.detector.overlap(own, before, other, there).gap) {
+        return false;
+      }
+    }
+  }
+  return true;
 }
 
 /// Nothing holds the group any longer.
