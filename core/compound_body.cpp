@@ -1,5 +1,6 @@
 #include "core/compound_body.hpp"
 
+#include "core/mass_properties.hpp"
 #include "core/solid_size.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -13,9 +14,6 @@
 namespace kairos {
 inline namespace core {
 namespace {
-
-/// Axes off by less than this part of the moments are principal: the roundoff of their sums.
-constexpr double principal_tolerance = 1e-12;
 
 void check(const std::vector<CompoundPart>& parts) {
   if (parts.empty()) {
@@ -86,10 +84,9 @@ std::shared_ptr<const CompoundBody> compound_in_place(std::vector<CompoundPart> 
   check(parts);
   const Weighed mass = weigh(parts);
   const Matrix3& I = mass.inertia;
-  const double across = std::max({std::abs(I(0, 1)), std::abs(I(0, 2)), std::abs(I(1, 2))});
   auto body = std::make_shared<CompoundBody>();
   body->volume = mass.volume;
-  if (across <= principal_tolerance * I.trace()) {
+  if (is_principal(I)) {
     body->moments = I.diagonal();
   } else {
     const Eigen::SelfAdjointEigenSolver<Matrix3> solver(I);

@@ -16,8 +16,6 @@ namespace {
 using Index = std::uint32_t;
 using Edge = std::pair<Index, Index>;
 
-/// Axes off by less than this part of the moments are principal: the roundoff of their integrals.
-constexpr double principal_tolerance = 1e-12;
 
 bool on_one_line(const Vector3& a, const Vector3& b, const Vector3& c) {
   // Collinear exactly if no point off the line spans a volume with them.
@@ -214,12 +212,6 @@ double width_along(const Polytope& polytope, const Vector3& n) {
     most = std::max(most, n.dot(x));
   }
   return most - least;
-}
-
-bool is_principal(const Matrix3& inertia) {
-  const double across =
-      std::max({std::abs(inertia(0, 1)), std::abs(inertia(0, 2)), std::abs(inertia(1, 2))});
-  return across <= principal_tolerance * inertia.trace();
 }
 
 }  // namespace

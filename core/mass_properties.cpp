@@ -133,5 +133,12 @@ MassProperties mass_properties(std::span<const Vector3> vertices,
   return solid;
 }
 
+bool is_principal(const Matrix3& inertia) {
+  constexpr double tolerance = 1e-12;
+  const double across =
+      std::max({std::abs(inertia(0, 1)), std::abs(inertia(0, 2)), std::abs(inertia(1, 2))});
+  return across <= tolerance * inertia.trace();
+}
+
 }  // namespace core
 }  // namespace kairos

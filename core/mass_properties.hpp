@@ -26,5 +26,9 @@ struct MassProperties {
 [[nodiscard]] MassProperties mass_properties(std::span<const Vector3> vertices,
                                              std::span<const Triangle> triangles);
 
+/// Are the axes of an inertia principal ones, to the roundoff of its integrals: what is off its
+/// diagonal at most 1e-12 of its trace? Then they are kept as they were told.
+[[nodiscard]] bool is_principal(const Matrix3& inertia);
+
 }  // namespace core
 }  // namespace kairos

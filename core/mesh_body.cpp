@@ -13,8 +13,6 @@ namespace {
 
 /// The hull of more vertices takes longer than it saves.
 constexpr std::size_t most_hull_points = 2'000;
-/// Axes off by less than this part of the moments are principal: the roundoff of their integrals.
-constexpr double principal_tolerance = 1e-12;
 /// A centroid that is off by less than this part of the extent is the origin.
 constexpr double centroid_roundoff = 1e-14;
 /// What a flat mesh is called thick, as a part of its radius.
@@ -37,12 +35,6 @@ double area_of(const CollisionMesh& mesh) {
     area += 0.5 * (mesh.vertices()[t[1]] - first).cross(mesh.vertices()[t[2]] - first).norm();
   }
   return area;
-}
-
-bool is_principal(const Matrix3& inertia) {
-  const double across =
-      std::max({std::abs(inertia(0, 1)), std::abs(inertia(0, 2)), std::abs(inertia(1, 2))});
-  return across <= principal_tolerance * inertia.trace();
 }
 
 std::shared_ptr<MeshBody> make_body(MeshData data, CollisionMesh::Kind kind) {

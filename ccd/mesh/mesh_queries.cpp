@@ -160,7 +160,6 @@ void MeshQueries::measure(const MeshPair& pair, TrianglePair triangles, MeshDist
 }
 
 void MeshQueries::open(const MeshPair& pair, const Key& key, double enough, MeshDistance& best) {
-  constexpr auto later = [](const Key& x, const Key& y) { return x.lower > y.lower; };
   const bool first = opens_a(pair, key.node.a, key.node.b);
   for (const ObbChild child :
        first ? node_a(pair, key.node.a).children : node_b(pair, key.node.b).children) {
@@ -185,7 +184,6 @@ void MeshQueries::open(const MeshPair& pair, const Key& key, double enough, Mesh
 }
 
 MeshDistance MeshQueries::search(const MeshPair& pair, double tolerance) {
-  constexpr auto later = [](const Key& x, const Key& y) { return x.lower > y.lower; };
   constexpr double accuracy = 1e-12;  // of the distance: what is not worth another test
   const double roundoff = 64.0 * pair.error();
   const bool asked_within = tolerance >= 0.0;

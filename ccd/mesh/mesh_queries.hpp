@@ -3,6 +3,7 @@
 #include "core/collision_mesh.hpp"
 
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 namespace kairos::ccd {
@@ -86,6 +87,10 @@ class MeshQueries {
     double lower;
     Node node;
   };
+  /// Of equals, too, one comes first: a heap of another library would take another.
+  static bool later(const Key& x, const Key& y) {
+    return std::tuple(x.lower, x.node.a, x.node.b) > std::tuple(y.lower, y.node.a, y.node.b);
+  }
   /// Calls leaf(pair of triangles) for all that no box proves to be farther apart than `tolerance`,
   /// until it says true.
   template <typename Leaf>

@@ -45,6 +45,9 @@ void bench_contact(int rounds);
 /// Meshes at rest: two tori in many placements, touching, distance, tolerance; a tree's time and
 /// size.
 void bench_meshes(int rounds);
+/// What is asked of shapes, in one run: vertices and edges, hulls, cylinders, meshes at rest and in
+/// motion, boxes, a crowd; beside FCL and Bullet where they were found. Then each goal, met or not.
+void bench_shapes(std::size_t pairs, int rounds);
 /// Rallies of `table-tennis` with a bat that collides as its box, its hull or its triangles: what
 /// each hits, lets pass and costs. Prints a table.
 void bench_bats(int rallies);

@@ -2,7 +2,7 @@
 #include "ccd/swept_box.hpp"
 #include "core/random.hpp"
 #include "experiments/bench/bench.hpp"
-#include "experiments/bench/chunk_race.hpp"
+#include "experiments/bench/race_table.hpp"
 #include "simulation/registry.hpp"
 
 #include <fmt/format.h>
@@ -16,8 +16,7 @@ namespace kairos::experiments {
 namespace {
 
 constexpr std::uint64_t seed = 20260109;  ///< of the balls
-constexpr double never = std::numeric_limits<double>::infinity();
-constexpr double fcl_accuracy = 1e-4;  ///< m, and s
+constexpr double fcl_accuracy = 1e-4;     ///< m, and s
 
 Contest sat_overlaps(const std::vector<BoxPair>& pairs) {
   std::vector<std::pair<ccd::OrientedBox, ccd::OrientedBox>> boxes;
@@ -66,72 +65,6 @@ std::vector<PeerQuery> all_peers() {
   return peers;
 }
 
-/// What a racer's answers are worth, by the proven ones.
-struct Judgement {
-  std::size_t missed = 0;     ///< no impact, where there is one
-  std::size_t late = 0;       ///< by more than `fcl_accuracy`
-  std::size_t invented = 0;   ///< an impact, where there is none
-  double median_error = 0.0;  ///< of the times of those that both found, s
-};
-
-Judgement judge(const std::vector<double>& answers, const std::vector<double>& truth) {
-  Judgement judgement;
-  std::vector<double> errors;
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    if (truth[i] == never || answers[i] == never) {
-      judgement.missed += truth[i] < answers[i] ? 1 : 0;
-      judgement.invented += answers[i] < truth[i] ? 1 : 0;
-      continue;
-    }
-    judgement.late += answers[i] > truth[i] + fcl_accuracy ? 1 : 0;
-    errors.push_back(std::abs(answers[i] - truth[i]));
-  }
-  if (!errors.empty()) {
-    const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-    std::nth_element(errors.begin(), middle, errors.end());
-    judgement.median_error = *middle;
-  }
-  return judgement;
-}
-
-/// Runs a race, prints it against the answers of its first racer, which are proven, and returns the
-/// results. `than`: whose time is the measure of the last column; none if it does not run.
-std::vector<RaceResult> tell(const std::string& title, const std::vector<Racer>& racers,
-                             std::size_t count, int rounds, const std::string& than) {
-  const std::vector<RaceResult> results = race_in_chunks(racers, count, rounds);
-  const auto measure = std::find_if(results.begin(), results.end(),
-                                    [&](const RaceResult& r) { return r.name == than; });
-  fmt::print("{}\n  {:<44}{:>12}{:>10}{:>8}{:>10}{:>14}{:>10}\n", title, "", "ns a query", "missed",
-             "late", "invented", "median error", "ratio");
-  for (const RaceResult& result : results) {
-    const Judgement verdict = judge(result.answers, results.front().answers);
-    fmt::print("  {:<44}{:>12.1f}{:>10}{:>8}{:>10}{:>14.1e}{:>10}\n", result.name,
-               result.nanoseconds, verdict.missed, verdict.late, verdict.invented,
-               verdict.median_error,
-               measure == results.end()
-                   ? std::string()
-                   : fmt::format("{:.3f}", result.nanoseconds / measure->nanoseconds));
-  }
-  return results;
-}
-
-/// The times beside what they are to stay below.
-struct Bar {
-  std::string what;
-  double value;
-  double at_most;
-};
-
-double ratio(const std::vector<RaceResult>& results, const std::string& name,
-             const std::string& than) {
-  double time[2] = {};
-  for (const RaceResult& result : results) {
-    time[0] = result.name == name ? result.nanoseconds : time[0];
-    time[1] = result.name == than ? result.nanoseconds : time[1];
-  }
-  return time[0] / time[1];
-}
-
 const char* const fcl_overlap = "FCL: OBB::overlap";
 const char* const fcl_advancement = "FCL: conservative advancement, libccd";
 
@@ -144,7 +77,7 @@ void race_overlaps(std::size_t count, int rounds, std::vector<Bar>& bars) {
     }
   }
   const auto results = tell(fmt::format("Do two boxes overlap? {} distinct pairs", count), racers,
-                            count, rounds, fcl_overlap);
+                            count, rounds, {fcl_overlap, fcl_accuracy});
   bars.push_back({"sat / FCL OBB::overlap", ratio(results, "sat, proven", fcl_overlap), 0.5});
 }
 
@@ -163,7 +96,7 @@ void race_impacts(std::size_t count, int rounds, double turn, std::vector<Bar>& 
   const auto results = tell(
       fmt::format("When do two boxes meet? {} distinct pairs that turn by up to {:.0f} degrees",
                   count, degrees),
-      racers, count, rounds, fcl_advancement);
+      racers, count, rounds, {fcl_advancement, fcl_accuracy});
   const auto name = [&](const char* what) {
     return fmt::format("{} / FCL advancement, {:.0f} degrees", what, degrees);
   };
@@ -210,7 +143,7 @@ void race_balls(std::size_t count, int rounds, std::vector<Bar>& bars) {
   const std::string title = "When do two balls under gravity meet?";
   const auto results =
       tell(fmt::format("{} {} distinct pairs of {}", title, count, cloud.balls.size()),
-           {{"certified", impact}}, count, rounds, "");
+           {{"certified", impact}}, count, rounds, {});
   bars.push_back({"certified, balls under gravity (ns)", results.front().nanoseconds, 60.0});
 
   // The same for a shorter window, in which nearly all stay apart: first their swept boxes.
@@ -226,7 +159,7 @@ void race_balls(std::size_t count, int rounds, std::vector<Bar>& bars) {
     }
   };
   const auto rejected =
-      tell("Could they meet within 1/60 s?", {{"swept boxes", reject}}, count, rounds, "");
+      tell("Could they meet within 1/60 s?", {{"swept boxes", reject}}, count, rounds, {});
   bars.push_back({"rejection by swept boxes (ns)", rejected.front().nanoseconds, 10.0});
 }
 
@@ -238,13 +171,7 @@ void bench_queries(std::size_t pairs, int rounds) {
   race_impacts(pairs, rounds, 0.7, bars);
   race_impacts(pairs, rounds, 3.0, bars);
   race_balls(pairs, rounds, bars);
-  fmt::print("Measured against what is asked for\n  {:<60}{:>12}{:>12}\n", "", "measured",
-             "at most");
-  for (const Bar& bar : bars) {
-    fmt::print("  {:<60}{:>12}{:>12}\n", bar.what,
-               std::isfinite(bar.value) ? fmt::format("{:.3g}", bar.value) : "no peer",
-               bar.at_most);
-  }
+  print_bars(bars);
 }
 
 }  // namespace kairos::experiments

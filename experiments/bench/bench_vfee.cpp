@@ -1,15 +1,13 @@
 #include "ccd/linear/exact_motion.hpp"
 #include "ccd/linear/linear_impact.hpp"
 #include "experiments/bench/bench.hpp"
+#include "experiments/bench/query_cost.hpp"
 #include "experiments/vfee/linear_families.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
-#include <limits>
-#include <numeric>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,7 +20,6 @@ using ccd::LinearKind;
 using ccd::LinearQuery;
 using reference::LinearFamilies;
 using reference::LinearFamily;
-using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t seed = 20260122;
 constexpr std::array kinds{LinearKind::vertex_face, LinearKind::edge_edge};
@@ -41,65 +38,7 @@ std::vector<LinearQuery> mixed(std::span<const LinearFamily> families, LinearKin
   return queries;
 }
 
-struct Cost {
-  double mean = 0.0, median = 0.0, p99 = 0.0;  ///< ns, what the clock costs taken off
-};
-
-double nanoseconds(Clock::duration time) {
-  return std::chrono::duration<double, std::nano>(time).count();
-}
-
-/// What it costs to read the clock twice.
-double clock_cost() {
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 1000; ++i) {
-    const auto start = Clock::now();
-    least = std::min(least, nanoseconds(Clock::now() - start));
-  }
-  return least;
-}
-
-constexpr std::size_t chunk_size = 64;
-
-/// The mean from chunks, of each the least of all rounds: short enough that some round is left
-/// alone by others. Median and 99 % from each query by itself, the least of all rounds too.
-template <typename Answer>
-Cost cost_of(const std::vector<LinearQuery>& queries, std::vector<LinearImpact>& answers,
-             int rounds, const Answer& answer) {
-  Cost cost;
-  const double clock = clock_cost();
-  std::vector<double> each(queries.size(), std::numeric_limits<double>::infinity());
-  std::vector<double> chunks((queries.size() + chunk_size - 1) / chunk_size,
-                             std::numeric_limits<double>::infinity());
-  for (int round = 0; round < rounds; ++round) {
-    for (std::size_t c = 0; c < chunks.size(); ++c) {
-      const std::size_t last = std::min(queries.size(), (c + 1) * chunk_size);
-      const auto start = Clock::now();
-      for (std::size_t i = c * chunk_size; i < last; ++i) {
-        answers[i] = answer(queries[i]);
-      }
-      chunks[c] = std::min(chunks[c], nanoseconds(Clock::now() - start) - clock);
-    }
-    for (std::size_t i = 0; i < queries.size(); ++i) {
-      const auto begin = Clock::now();
-      answers[i] = answer(queries[i]);
-      each[i] = std::min(each[i], nanoseconds(Clock::now() - begin) - clock);
-    }
-  }
-  cost.mean =
-      std::accumulate(chunks.begin(), chunks.end(), 0.0) / static_cast<double>(queries.size());
-  const auto quantile = [&each](double part) {
-    const auto at =
-        each.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(each.size() - 1));
-    std::nth_element(each.begin(), at, each.end());
-    return *at;
-  };
-  cost.median = quantile(0.5);
-  cost.p99 = quantile(0.99);
-  return cost;
-}
-
-void print_row(const std::string& name, const Cost& cost, const Cost& exact,
+void print_row(const std::string& name, const QueryCost& cost, const QueryCost& exact,
                const std::vector<LinearImpact>& answers) {
   std::array<double, 4> share{};
   double hits = 0.0;
@@ -146,8 +85,10 @@ void bench_vfee(std::size_t queries, int rounds) {
       const std::vector<LinearQuery> few(
           asked.begin(),
           asked.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(4096, queries)));
-      const Cost exact = cost_of(few, answers, rounds, ccd::exact_impact);
-      const Cost cost = cost_of(asked, answers, rounds, ccd::linear_impact);
+      const QueryCost exact = cost_of(
+          few.size(), rounds, [&](std::size_t i) { answers[i] = ccd::exact_impact(few[i]); });
+      const QueryCost cost = cost_of(
+          asked.size(), rounds, [&](std::size_t i) { answers[i] = ccd::linear_impact(asked[i]); });
       print_row(set.name + (kind == LinearKind::vertex_face ? ", vf" : ", ee"), cost, exact,
                 answers);
     }

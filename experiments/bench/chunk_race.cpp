@@ -11,8 +11,6 @@
 namespace kairos::experiments {
 namespace {
 
-constexpr std::size_t chunk_size = std::size_t{1} << 12;
-
 /// The core that this thread runs on is its only one while this lives.
 class PinnedToOneCore {
  public:
@@ -44,8 +42,8 @@ class PinnedToOneCore {
 
 }  // namespace
 
-std::vector<RaceResult> race_in_chunks(std::span<const Racer> racers, std::size_t count,
-                                       int rounds) {
+std::vector<RaceResult> race_in_chunks(std::span<const Racer> racers, std::size_t count, int rounds,
+                                       std::size_t chunk) {
   using Clock = std::chrono::steady_clock;
   const PinnedToOneCore pinned;
   std::vector<RaceResult> results;
@@ -53,8 +51,8 @@ std::vector<RaceResult> race_in_chunks(std::span<const Racer> racers, std::size_
     results.push_back({racer.name, 0.0, std::vector<double>(count)});
   }
   std::vector<double> least(racers.size());
-  for (std::size_t first = 0; first < count; first += chunk_size) {
-    const std::size_t last = std::min(count, first + chunk_size);
+  for (std::size_t first = 0; first < count; first += chunk) {
+    const std::size_t last = std::min(count, first + chunk);
     std::fill(least.begin(), least.end(), std::numeric_limits<double>::infinity());
     for (int round = 0; round < rounds; ++round) {
       for (std::size_t i = 0; i < racers.size(); ++i) {

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,6 +15,9 @@
 namespace kairos::experiments {
 
 namespace {
+
+/// Others keep a shape of theirs for each.
+constexpr std::size_t most_shape_pairs = std::size_t{1} << 14U;
 
 struct BenchCommand {
   std::string name;
@@ -47,6 +51,10 @@ struct BenchCommand {
       bench_meshes(rounds);
       return;
     }
+    if (name == "shapes") {
+      bench_shapes(std::min(pairs, most_shape_pairs), rounds);
+      return;
+    }
     if (name == "bats") {
       bench_bats(rallies);
       return;
@@ -68,14 +76,16 @@ void add_bench_command(CLI::App& app) {
       "bench", "Time it: ratios within one run, interleaved, the least of several rounds");
   bench
       ->add_option("name", options->name,
-                   "bounce, ccd, contact, vfee, meshes, bats or gas: times; without it the first "
-                   "two; accuracy: answers against a reference")
-      ->check(
-          CLI::IsMember({"bounce", "ccd", "contact", "vfee", "meshes", "bats", "gas", "accuracy"}));
+                   "bounce, ccd, contact, vfee, meshes, shapes, bats or gas: times; without it the "
+                   "first two; accuracy: answers against a reference")
+      ->check(CLI::IsMember(
+          {"bounce", "ccd", "contact", "vfee", "meshes", "shapes", "bats", "gas", "accuracy"}));
   bench->add_option("--rounds", options->rounds, "how often each is timed")
       ->check(whole_number(1, 1000))
       ->capture_default_str();
-  bench->add_option("--pairs", options->pairs, "ccd, vfee: how many distinct pairs")
+  bench
+      ->add_option("--pairs", options->pairs,
+                   "ccd, vfee, shapes (at most 16384): how many distinct pairs")
       ->check(whole_number(1, 1 << 22))
       ->capture_default_str();
   bench->add_option("--rallies", options->rallies, "bats: how many")
