@@ -112,9 +112,14 @@ void add_random_scenes_command(CLI::App& app) {
   random->add_option("--first", command->survey.first, "number of the first one")
       ->check(whole_number(0, std::uint64_t{1} << 62))
       ->capture_default_str();
-  random->add_flag("--touching", command->survey.touching,
-                   "scenes that start in touch, or come to it: stacks, rows, grooves, corners, "
-                   "inclines, presses, inelastic clusters");
+  CLI::Option* const shapes = random->add_flag(
+      "--shapes", command->survey.shapes,
+      "scenes of all shapes: capsules, cylinders, cones, hulls, compounds, height fields, meshes");
+  CLI::Option* const touching =
+      random->add_flag("--touching", command->survey.touching,
+                       "scenes that start in touch, or come to it: stacks, rows, grooves, corners, "
+                       "inclines, presses, inelastic clusters");
+  shapes->excludes(touching);
   random
       ->add_option("--threads", command->survey.threads,
                    "0: one per core; results do not depend on it")

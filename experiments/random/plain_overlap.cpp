@@ -1,5 +1,7 @@
 #include "experiments/random/plain_overlap.hpp"
 
+#include "experiments/random/plain_parts.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -84,6 +86,11 @@ Real depth_below(const HalfSpace& plane, const Pose& at_plane, const Solid& soli
   }
 }
 
+bool is_plain(const Shape& shape) {
+  return std::holds_alternative<Sphere>(shape) || std::holds_alternative<Box>(shape) ||
+         std::holds_alternative<HalfSpace>(shape);
+}
+
 }  // namespace
 
 double plain_depth(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
@@ -96,6 +103,9 @@ double plain_depth(const Shape& a, const Pose& pose_a, const Shape& b, const Pos
   Real found = 0;
   if (plane_b != nullptr && plane_a == nullptr) {
     return plain_depth(b, pose_b, a, pose_a);
+  }
+  if (!is_plain(a) || !is_plain(b)) {
+    return plain_parts_depth(a, pose_a, b, pose_b);
   }
   if (plane_a != nullptr && plane_b == nullptr) {
     found = sphere_b != nullptr ? depth_below(*plane_a, pose_a, *sphere_b, pose_b)

@@ -1,6 +1,7 @@
 #include "experiments/random/random_scene.hpp"
 
 #include "core/random.hpp"
+#include "experiments/random/random_shape.hpp"
 
 #include <fmt/format.h>
 
@@ -22,17 +23,13 @@ void write_body(std::string& out, const RandomBody& b) {
   out += "\n[[body]]\n";
   text("name", b.name);
   text("entity", b.entity);
-  text("shape", b.shape);
-  if (b.shape == "sphere") {
-    line("radius", fmt::format("{}", b.radius));
-  } else if (b.shape == "box") {
-    line("half_extents", vector(b.half_extents));
-  } else {
-    line("normal", vector(b.normal));
-  }
+  out += shape_toml(b);
   line("position", vector(b.position));
   if (b.moves()) {
     line("mass", fmt::format("{}", b.mass));
+    if (b.gyration > 0.0) {
+      line("inertia", vector(Vector3::Constant(b.mass * b.gyration)));
+    }
     line("velocity", vector(b.velocity));
   }
   if (const double angle = b.turned.norm(); angle > 0.0) {
@@ -51,6 +48,7 @@ void write_body(std::string& out, const RandomBody& b) {
     line("frequency", fmt::format("{}", b.frequency));
     line("phase", fmt::format("{}", b.phase));
   }
+  out += parts_toml(b);
 }
 
 /// Makes one scene; its lengths are about 1, and scaled in the end.
@@ -58,6 +56,11 @@ class Maker {
  public:
   Maker(std::uint64_t seed, std::uint64_t index) : random_(seed, index) {
     scene_.name = fmt::format("random-{}-{}", seed, index);
+  }
+  /// Draws from all shapes, not from spheres and boxes alone.
+  Maker& of_all_shapes() {
+    all_shapes_ = true;
+    return *this;
   }
 
   RandomScene make() {
@@ -115,6 +118,9 @@ class Maker {
         b.phase = random_.uniform(0.0, 6.0);
       }
     }
+    if (all_shapes_ && b.entity == "wall") {
+      draw_shape(random_, length_, b);
+    }
     b.name = next_name(b.entity == "wall" ? "block" : "pad");
     return b;
   }
@@ -122,7 +128,8 @@ class Maker {
   RandomBody mover() {
     RandomBody b;
     const double kind = random_.uniform();
-    b.entity = kind < 0.6 ? "ball" : kind < 0.9 ? "body" : "balloon";
+    const double balls = all_shapes_ ? 0.15 : 0.6;
+    b.entity = kind < balls ? "ball" : kind < 0.9 ? "body" : "balloon";
     b.shape = b.entity == "body" && chance(0.8) ? "box" : "sphere";
     b.radius = size();
     b.half_extents = {size(), size(), size()};
@@ -131,6 +138,9 @@ class Maker {
     // A box that loses speed comes to rest on its edges: that is refused by design.
     const bool loses = chance(b.shape == "box" ? 0.02 : 0.3);
     b.restitution = loses ? random_.uniform(0.3, 1.0) : 1.0;
+    if (all_shapes_ && b.entity == "body") {
+      draw_shape(random_, length_, b);
+    }
     if (b.entity == "body") {
       b.turned = random_.direction() * random_.uniform(0.0, 3.0);
       b.spin = random_.direction() * random_.log_uniform(0.1, 30.0) * speed_ / length_;
@@ -167,13 +177,10 @@ class Maker {
   double length_ = 1.0;
   double speed_ = 1.0;
   int count_ = 0;
+  bool all_shapes_ = false;
 };
 
 }  // namespace
-
-double RandomBody::reach() const {
-  return (shape == "sphere" ? radius : half_extents.norm()) + swing.norm();
-}
 
 std::string RandomScene::toml() const {
   std::string out = fmt::format(
@@ -187,6 +194,12 @@ std::string RandomScene::toml() const {
 
 RandomScene random_scene(std::uint64_t seed, std::uint64_t index) {
   return Maker(seed, index).make();
+}
+
+RandomScene shapes_scene(std::uint64_t seed, std::uint64_t index) {
+  RandomScene scene = Maker(~seed - 1, index).of_all_shapes().make();
+  scene.name = fmt::format("shapes-{}-{}", seed, index);
+  return scene;
 }
 
 }  // namespace kairos::experiments

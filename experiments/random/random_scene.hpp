@@ -12,7 +12,7 @@ namespace kairos::experiments {
 struct RandomBody {
   std::string name;
   std::string entity;  ///< wall, ball, body, balloon, anti-gravity-pad
-  std::string shape;   ///< sphere, box, half-space
+  std::string shape;   ///< sphere, box, half-space; see `shapes_scene`
   double radius = 0.0;
   Vector3 half_extents = Vector3::Zero();
   Vector3 normal = Vector3::UnitY();  ///< of a half-space
@@ -25,6 +25,16 @@ struct RandomBody {
   Vector3 swing = Vector3::Zero();  ///< amplitude of a driven body, m; zero: nothing drives it
   double frequency = 0.0;           ///< Hz
   double phase = 0.0;
+
+  double length = 0.0;              ///< of a capsule or a cylinder; the height of a cone
+  std::vector<Vector3> points;      ///< of a hull
+  double rounding = 0.0;            ///< of a hull
+  std::string file;                 ///< of a mesh
+  double unit = 1.0;                ///< of a mesh, m
+  std::vector<double> heights;      ///< of a height field, three rows of three
+  double spacing = 0.0;             ///< of a height field
+  std::vector<RandomBody> parts{};  ///< of a compound: shape, size, position, turned
+  double gyration = 0.0;            ///< its three moments over the mass, m^2; 0: the solid's
 
   [[nodiscard]] bool moves() const {
     return entity == "ball" || entity == "body" || entity == "balloon";
@@ -48,6 +58,10 @@ struct RandomScene {
 
 /// The scene of that number: a pure function of seed and index.
 [[nodiscard]] RandomScene random_scene(std::uint64_t seed, std::uint64_t index);
+
+/// The same of all shapes that there are: spheres, boxes, capsules, cylinders, cones, hulls (one in
+/// four rounded), compounds, height fields, solid meshes; as walls, driven, and free.
+[[nodiscard]] RandomScene shapes_scene(std::uint64_t seed, std::uint64_t index);
 
 /// What a person builds first, and what is hardest: bodies that touch at the start (rows, stacks,
 /// boxes on a floor), grooves, corners, inclines with a stopper, rows of balls that run into each

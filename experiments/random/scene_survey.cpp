@@ -37,15 +37,17 @@ Tally run_block(const SceneSurvey& survey, std::uint64_t first, std::uint64_t co
 }
 
 std::string survey_key(const SceneSurvey& survey) {
-  return fmt::format("kairos random-scenes 1{} seed {} first {} program {}",
-                     survey.touching ? " touching" : "", survey.seed, survey.first,
-                     program_identity());
+  return fmt::format("kairos random-scenes 1{}{} seed {} first {} program {}",
+                     survey.touching ? " touching" : "", survey.shapes ? " shapes" : "",
+                     survey.seed, survey.first, program_identity());
 }
 
 }  // namespace
 
 RandomScene scene_of(const SceneSurvey& survey, std::uint64_t number) {
-  return survey.touching ? touching_scene(survey.seed, number) : random_scene(survey.seed, number);
+  return survey.touching ? touching_scene(survey.seed, number)
+         : survey.shapes ? shapes_scene(survey.seed, number)
+                         : random_scene(survey.seed, number);
 }
 
 Tally run_survey(const SceneSurvey& survey, const std::string& journal,

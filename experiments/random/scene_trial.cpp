@@ -119,17 +119,31 @@ Vector3 rounded(const Vector3& v, int digits) {
   return {rounded(v[0], digits), rounded(v[1], digits), rounded(v[2], digits)};
 }
 
+void simplify_numbers(RandomBody& b, int digits) {
+  for (double* x : {&b.radius, &b.mass, &b.restitution, &b.frequency, &b.phase, &b.length,
+                    &b.rounding, &b.unit, &b.spacing, &b.gyration}) {
+    *x = rounded(*x, digits);
+  }
+  for (Vector3* v : {&b.half_extents, &b.position, &b.velocity, &b.turned, &b.spin, &b.swing}) {
+    *v = rounded(*v, digits);
+  }
+  for (Vector3& x : b.points) {
+    x = rounded(x, digits);
+  }
+  for (double& x : b.heights) {
+    x = rounded(x, digits);
+  }
+  for (RandomBody& part : b.parts) {
+    simplify_numbers(part, digits);
+  }
+}
+
 void simplify_numbers(RandomScene& scene, int digits) {
   scene.duration = rounded(scene.duration, digits);
   scene.frame = rounded(scene.frame, digits);
   scene.G = rounded(scene.G, digits);
   for (RandomBody& b : scene.bodies) {
-    for (double* x : {&b.radius, &b.mass, &b.restitution, &b.frequency, &b.phase}) {
-      *x = rounded(*x, digits);
-    }
-    for (Vector3* v : {&b.half_extents, &b.position, &b.velocity, &b.turned, &b.spin, &b.swing}) {
-      *v = rounded(*v, digits);
-    }
+    simplify_numbers(b, digits);
   }
 }
 

@@ -2,14 +2,21 @@
 // origin is, which way the axes point, the units, the order of the file, and being interrupted.
 
 #include "core/archive.hpp"
+#include "core/compound_body.hpp"
+#include "core/mesh_body.hpp"
+#include "core/mesh_shapes.hpp"
 #include "core/random.hpp"
 #include "core/reading/scene_reader.hpp"
 #include "experiments/parallel_for.hpp"
+#include "experiments/random/plain_overlap.hpp"
+#include "experiments/random/plain_parts.hpp"
 #include "experiments/random/scene_survey.hpp"
 #include "simulation/scene_library.hpp"
 #include "simulation/simulate.hpp"
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -135,6 +142,88 @@ TEST_CASE("a thousand random scenes: no NaN, no overlap, no hang, few stops", "[
   }
   CHECK(stops <= 50);
   CHECK(impacts > 4000);
+}
+
+TEST_CASE("scenes of all shapes: no NaN, no overlap, no hang, few stops", "[random][slow]") {
+  constexpr std::size_t count = 400;
+  std::vector<Trial> trials(count);
+  parallel_for(count, 0, [&](std::size_t i) { trials[i] = try_scene(shapes_scene(seed, i)); });
+  int stops = 0;
+  std::int64_t impacts = 0;
+  std::string text;
+  for (std::size_t i = 0; i < count; ++i) {
+    INFO("kairos random-scenes --shapes --seed "
+         << seed << " --first " << i << " --count 1: " << to_string(trials[i].fate) << ": "
+         << trials[i].reason);
+    CHECK_FALSE(trials[i].failed());
+    stops += trials[i].fate == Fate::stopped ? 1 : 0;
+    impacts += trials[i].impacts;
+    text += shapes_scene(seed, i).toml();
+  }
+  CHECK(stops <= 40);
+  CHECK(impacts > 1500);
+  for (const char* shape : {"sphere", "box", "half-space", "capsule", "cylinder", "cone", "hull",
+                            "compound", "mesh", "height-field"}) {
+    CAPTURE(shape);
+    CHECK(text.find(fmt::format("shape = \"{}\"", shape)) != std::string::npos);
+  }
+}
+
+TEST_CASE("the judge of all shapes knows depths that are known", "[random]") {
+  const Pose origin;
+  const auto at = [](double x, double y, double z) {
+    return Pose{{x, y, z}, Quaternion::Identity()};
+  };
+  const Shape cylinder = Cylinder{0.5, 2.0};
+  const Shape cone = Cone{0.5, 1.0};  // its apex is 0.75 above the origin
+  const Shape ring = Mesh{solid_body(torus_mesh(1.0, 0.25, 18, 12)).body};
+  const Shape cube = Mesh{solid_body(box_mesh({1.0, 1.0, 1.0})).body};
+  const Shape pair = Compound{
+      compound_in_place({{Sphere{0.5}, at(-1.0, 0.0, 0.0)}, {Sphere{0.5}, at(1.0, 0.0, 0.0)}})};
+  const Shape ball = Sphere{0.6};
+  const Shape floor = HalfSpace{};
+  struct Known {
+    const Shape& a;
+    const Shape& b;
+    Pose at_b;
+    double depth;
+  };
+  const double d = 1e-9;
+  const Known inside[] = {{cylinder, cylinder, at(1.0 - d, 0.3, 0.0), d},
+                          {cylinder, cylinder, at(0.2, 2.0 - d, 0.0), d},
+                          {cone, cylinder, at(0.1, 1.75 - d, 0.0), d},
+                          {pair, cylinder, at(0.1, 1.0, 0.0), 1e-2},
+                          {cube, cylinder, at(0.0, 1.99, 0.0), 1e-2},
+                          {cube, cone, at(0.0, 0.0, 0.0), 0.1}};  // without a touch
+  for (const Known& known : inside) {
+    const double depth = plain_parts_depth(known.a, origin, known.b, known.at_b);
+    CAPTURE(known.at_b.position.transpose(), depth);
+    CHECK(depth > 0.1 * known.depth);
+  }
+  const Known apart[] = {{cylinder, cylinder, at(1.0 + d, 0.3, 0.0), 0.0},
+                         {cylinder, cylinder, at(0.2, 2.0 + d, 0.0), 0.0},
+                         {cone, cylinder, at(0.1, 1.75 + d, 0.0), 0.0},
+                         {pair, cylinder, at(0.0, 1.1, 0.0), 0.0},  // between the two
+                         {cube, cylinder, at(0.0, 2.0 + d, 0.0), 0.0},
+                         {ring, ball, at(0.0, 0.0, 0.0), 0.0}};  // in the hole
+  for (const Known& known : apart) {
+    CAPTURE(known.at_b.position.transpose());
+    CHECK(plain_parts_depth(known.a, origin, known.b, known.at_b) == 0.0);
+  }
+  CHECK(plain_depth(cone, at(0.0, 0.25 - d, 0.0), floor, origin) == Approx(d).epsilon(1e-6));
+  // Boxes, whose depth the fifteen axes tell, by the other way.
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    Random random(seed, i << 20U);
+    const Shape a = Box{{1.0, 0.5, 0.25}};
+    const Shape b = Box{{0.3, 0.6, 0.9}};
+    const Vector3 away = random.uniform(0.5, 2.0) * random.direction();
+    const Pose pose_b{away, random.orientation()};
+    const double exact = plain_depth(a, origin, b, pose_b);
+    const double least = plain_parts_depth(a, origin, b, pose_b);
+    CAPTURE(i, exact, least);
+    CHECK(least <= exact * (1.0 + 1e-12));
+    CHECK(least >= exact / 8.0);  // powers of four, and sqrt(3) for the octahedron
+  }
 }
 
 TEST_CASE("scenes that start in touch: no hang, no overlap, and every stop says what to do",
