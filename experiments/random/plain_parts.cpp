@@ -33,7 +33,8 @@ struct Part {
   Real reach = 0;  ///< of a ball about the middle that holds it
 
   [[nodiscard]] Vector highest(const Vector& n) const {
-    const Vector across = n - n.dot(axis) * axis;
+    // A product that is across the axis however nearly parallel n is: a difference would be noise.
+    const Vector across = axis.cross(n.cross(axis));
     const Real sine = across.norm();
     Vector best = Vector::Zero();
     Real most = -infinity;
@@ -149,7 +150,8 @@ bool affine_weights(const std::vector<Vector>& points, std::vector<Real>& weight
   }
   const Column x = M.fullPivLu().solve(right);
   weights.assign(x.data(), x.data() + n);
-  return x.allFinite();
+  // Of points that are no basis any sum may come out.
+  return x.allFinite() && std::abs(x.head(n).sum() - 1) < 1e-9L;
 }
 
 /// Wolfe's algorithm on the points of b + by - a.
@@ -180,9 +182,12 @@ class LeastNorm {
       for (std::size_t k = 0; k < corral_.size(); ++k) {
         nearer += weights_[k] * corral_[k];
       }
-      // Four points around 0; or no progress: what is left is roundoff of the coordinates.
+      if (corral_.size() == 4 && around_zero()) {
+        return true;
+      }
+      // No progress: what is left is roundoff of the coordinates.
       if (corral_.size() == 4 || !(nearer.squaredNorm() < x.squaredNorm())) {
-        return corral_.size() == 4 || !(nearer.norm() > roundoff);
+        return !(nearer.norm() > roundoff);
       }
       x = nearer;
     }
@@ -192,6 +197,23 @@ class LeastNorm {
  private:
   /// That is lowest along n.
   [[nodiscard]] Vector point(const Vector& n) const { return b_.highest(-n) + by_ - a_.highest(n); }
+
+  /// Is 0 in the tetrahedron of four points? By the signs of four volumes.
+  [[nodiscard]] bool around_zero() const {
+    const auto volume = [](const Vector& a, const Vector& b, const Vector& c) {
+      return a.dot(b.cross(c));
+    };
+    const std::vector<Vector>& p = corral_;
+    const std::array<Real, 4> volumes{volume(p[1], p[2], p[3]), -volume(p[0], p[2], p[3]),
+                                      volume(p[0], p[1], p[3]), -volume(p[0], p[1], p[2])};
+    Real size = 0;
+    for (const Vector& x : p) {
+      size = std::max(size, x.norm());
+    }
+    const Real hidden = 1e-17L * size * size * size;
+    return std::all_of(volumes.begin(), volumes.end(), [&](Real v) { return v > hidden; }) ||
+           std::all_of(volumes.begin(), volumes.end(), [&](Real v) { return v < -hidden; });
+  }
 
   /// Drops points until that of least norm of the affine hull is within the others.
   [[nodiscard]] bool settle() {
