@@ -21,12 +21,13 @@ double rounding(const BodyState& body, const Contact& contact) {
 
 }  // namespace
 
-std::string broken_restitution(const Event& impact, double e) {
+std::string broken_restitution(const Event& impact, double e, double handed_on) {
   const Contact& contact = impact.contact;
   const double approach = normal_velocity(contact, impact.before_a, impact.before_b);
   const double after = normal_velocity(contact, impact.after_a, impact.after_b);
-  const double roundoff = rounding(impact.before_a, contact) + rounding(impact.before_b, contact) +
-                          rounding(impact.after_a, contact) + rounding(impact.after_b, contact);
+  const double roundoff = handed_on + rounding(impact.before_a, contact) +
+                          rounding(impact.before_b, contact) + rounding(impact.after_a, contact) +
+                          rounding(impact.after_b, contact);
   if (approach > roundoff) {
     return fmt::format("an impact of two that part at {:.3g} m/s", approach);
   }

@@ -177,7 +177,7 @@ class Attempt {
       }
       const Vector3 v = mode_.velocities[patch.b].linear - mode_.velocities[patch.a].linear;
       const Vector3 a = mode_.accelerations[patch.b].linear - mode_.accelerations[patch.a].linear;
-      if (v.norm() > project_roundoff * fastest_ + patch.rest_speed * 1e-3 ||
+      if (v.norm() > project_roundoff * fastest_ + patch.still_speed ||
           a.norm() > solve_roundoff * load_) {
         return refuse("a contact moves along a curved surface or over an edge");
       }

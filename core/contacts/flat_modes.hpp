@@ -19,6 +19,7 @@ struct GroupPatch {
   double friction = 0.0;            ///< Coulomb's; may be infinite
   Vector3 drift = Vector3::Zero();  ///< of the surface of b along that of a, beside their motion
                                     ///< (belts), m/s
+  double still_speed = 0.0;  ///< m/s; what goes no faster along a curved surface stays where it is
 };
 
 /// What two surfaces in touch do along each other.

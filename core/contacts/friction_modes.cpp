@@ -259,7 +259,7 @@ class Attempt {
     const Vector3 v = mode_.velocities[t.b].linear - mode_.velocities[t.a].linear;
     Vector3 a = mode_.accelerations[t.b].linear - mode_.accelerations[t.a].linear;
     const bool plane = patch.manifold.face_of_a || patch.manifold.face_of_b;
-    if (!plane && (v.norm() > project_roundoff * fastest_ + patch.rest_speed * 1e-3 ||
+    if (!plane && (v.norm() > project_roundoff * fastest_ + patch.still_speed ||
                    a.norm() > solve_roundoff * load_)) {
       refuse("a contact moves along a curved surface or over an edge");
       return;

@@ -94,7 +94,10 @@ void add_toi_command(CLI::App& app) {
       "box (default), sphere (radius in hx), half-space (through p, normal the body's +y),\n"
       "capsule, cylinder, cone (radius in hx, half the length or height in hy, along the body's "
       "y),\n"
-      "hull (rounding in hx; a_points, b_points: \"x y z; x y z; ...\", p their centroid).\n"
+      "hull (rounding in hx; a_points, b_points: \"x y z; x y z; ...\", p their centroid),\n"
+      "mesh (its triangles) or solid (what they enclose), from an .off, .obj or .stl in a_file, a "
+      "unit of it in hx,\n"
+      "compound (a_parts: \"shape hx hy hz px py pz qw qx qy qz; ...\").\n"
       "Answer: id,status,t_lo,t_hi,gap,nx,ny,nz,evaluations in the same order.");
   toi->callback([command] { command->run(); });
 }

@@ -2,108 +2,16 @@
 
 #include "core/archive.hpp"
 #include "core/error.hpp"
-#include "core/impact_check.hpp"
 #include "core/reading/scene_reader.hpp"
-#include "experiments/random/plain_overlap.hpp"
+#include "experiments/random/scene_watch.hpp"
 #include "simulation/simulate.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
 namespace kairos::experiments {
 namespace {
-
-/// More events in a frame than any of these scenes has: they last for a few crossings of the room.
-/// A run that takes more must stop by itself.
-constexpr std::int64_t most_in_frame = 20'000;
-/// And in all frames, of which there are 64 and one.
-constexpr std::int64_t most_events = 66 * most_in_frame;
-
-struct BrokenPromise {
-  Fate fate;
-  std::string what;
-  double time;
-};
-
-/// Ends the run at the first promise that is broken.
-class Watch : public Recorder {
- public:
-  void begin(const Model& model) override { model_ = &model; }
-  void frame(const Frame& frame) override {
-    check_overlap(frame.bodies, frame.time);
-    const double allowed = 8.0 * std::numeric_limits<double>::epsilon() * frame.ledger.flow();
-    if (std::abs(frame.ledger.unexplained()) > allowed) {
-      throw BrokenPromise{
-          Fate::ledger,
-          fmt::format("{} J unexplained, allowed {}", frame.ledger.unexplained(), allowed),
-          frame.time.seconds};
-    }
-    if (frame.index > most_events) {
-      throw BrokenPromise{Fate::hang, "frames without end", frame.time.seconds};
-    }
-  }
-  void event(const Event& event) override {
-    if (event.kind == EventKind::impact) {
-      check_pair(event.a, event.before_a, event.b, event.before_b, event.time);
-    }
-    if (++events_ > most_events) {
-      throw BrokenPromise{Fate::hang, fmt::format("{} events", events_), event.time.seconds};
-    }
-    if (event.kind == EventKind::impact) {
-      check_impact(event);
-    }
-  }
-
- private:
-  void check_impact(const Event& event) {
-    if (event.contact.friction > 0.0) {
-      return;  // restitution is then one of work, not of velocities
-    }
-    const double e = model_->restitution(event.a, event.b);
-    if (const std::string broken = broken_restitution(event, e); !broken.empty()) {
-      throw BrokenPromise{Fate::law,
-                          fmt::format("'{}' and '{}': {}", model_->body(event.a).name,
-                                      model_->body(event.b).name, broken),
-                          event.time.seconds};
-    }
-  }
-
-  void check_overlap(std::span<const BodyState> bodies, Instant t) {
-    for (const auto& [a, b] : model_->pairs()) {
-      if (model_->is_field(a) || model_->is_field(b) ||
-          !(model_->is_free(a) || model_->is_free(b))) {
-        continue;
-      }
-      check_pair(a, bodies[a], b, bodies[b], t);
-    }
-  }
-
-  /// By geometry of its own, which no detector shares.
-  void check_pair(BodyIndex a, const BodyState& state_a, BodyIndex b, const BodyState& state_b,
-                  Instant t) const {
-    const double depth =
-        plain_depth(model_->shape(a), state_a.pose, model_->shape(b), state_b.pose);
-    double scale = state_a.pose.position.norm() + state_b.pose.position.norm();
-    for (const BodyIndex i : {a, b}) {
-      const double radius = bounding_radius(model_->shape(i));
-      scale += std::isfinite(radius) ? radius : 0.0;
-    }
-    // Bodies in touch may stay so to 16 times the bound of a gap's rounding, 12 eps of what it is a
-    // sum of (ccd/README.md, a start in touch); less is no overlap that could be told from none.
-    constexpr double hidden = 16.0 * 12.0 * std::numeric_limits<double>::epsilon();
-    if (depth > hidden * scale) {
-      throw BrokenPromise{Fate::overlap,
-                          fmt::format("'{}' is {:.3g} m inside '{}'", model_->body(b).name, depth,
-                                      model_->body(a).name),
-                          t.seconds};
-    }
-  }
-
-  const Model* model_ = nullptr;
-  std::int64_t events_ = 0;
-};
 
 Trial trial_of(const RunResult& result) {
   Trial trial{Fate::right, result.reason, result.end.seconds, result.cost.impacts};
@@ -224,9 +132,10 @@ class Shrinker {
 };
 
 Trial try_model(const Model& model, bool roundoff) {
-  Watch watch;
+  SceneWatch watch;
   try {
-    return trial_of(simulate(model, {.max_events = most_in_frame, .roundoff = roundoff}, watch));
+    return trial_of(
+        simulate(model, {.max_events = SceneWatch::most_in_frame, .roundoff = roundoff}, watch));
   } catch (const BrokenPromise& broken) {
     return {broken.fate, broken.what, broken.time, 0};
   }
@@ -252,6 +161,8 @@ std::string_view to_string(Fate fate) {
       return "invalid";
     case Fate::law:
       return "law broken";
+    case Fate::apart:
+      return "held apart";
   }
   return "";
 }

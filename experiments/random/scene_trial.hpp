@@ -23,10 +23,12 @@ enum class Fate {
   hang,        ///< more events than can be
   invalid,     ///< refused: the scene is wrong, which is the generator's mistake
   law,         ///< an impact of two that part, or a rebound that breaks restitution
+  apart,       ///< told to be in contact, and not near each other in a drawn frame
 };
-constexpr Fate last_of(Fate) { return Fate::law; }
-inline constexpr std::array all_fates{Fate::right, Fate::not_finite, Fate::overlap, Fate::ledger,
-                                      Fate::hang,  Fate::law,        Fate::invalid, Fate::stopped};
+constexpr Fate last_of(Fate) { return Fate::apart; }
+inline constexpr std::array all_fates{Fate::right,  Fate::not_finite, Fate::overlap,
+                                      Fate::ledger, Fate::hang,       Fate::law,
+                                      Fate::apart,  Fate::invalid,    Fate::stopped};
 [[nodiscard]] std::string_view to_string(Fate fate);
 
 struct Trial {

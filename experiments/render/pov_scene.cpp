@@ -32,15 +32,18 @@ std::string vec(const Vector3& v) {
   return fmt::format("<{:.9g},{:.9g},{:.9g}>", v.x(), v.y(), v.z());
 }
 
-/// Body axes to the world, as POV-Ray writes a linear map.
-std::string matrix(const Pose& pose) {
-  const Matrix3 R = pose.orientation.toRotationMatrix();
-  const Vector3& p = pose.position;
+/// Unit vectors become the columns of m, the origin becomes p: a linear map as POV-Ray writes it.
+std::string matrix(const Matrix3& m, const Vector3& p) {
   return fmt::format(
       "matrix <{:.9g},{:.9g},{:.9g}, {:.9g},{:.9g},{:.9g}, {:.9g},{:.9g},{:.9g}, "
       "{:.9g},{:.9g},{:.9g}>",
-      R(0, 0), R(1, 0), R(2, 0), R(0, 1), R(1, 1), R(2, 1), R(0, 2), R(1, 2), R(2, 2), p.x(), p.y(),
+      m(0, 0), m(1, 0), m(2, 0), m(0, 1), m(1, 1), m(2, 1), m(0, 2), m(1, 2), m(2, 2), p.x(), p.y(),
       p.z());
+}
+
+/// Body axes to the world.
+std::string matrix(const Pose& pose) {
+  return matrix(pose.orientation.toRotationMatrix(), pose.position);
 }
 
 std::string pigment(const Colour& c, double transmit) {
@@ -293,7 +296,8 @@ class Painter {
     return out + '"';
   }
 
-  /// Close before the eye.
+  /// Close before the eye, on a light strip along the lower edge, so that it can be read on
+  /// anything.
   std::string label() const {
     const Camera& camera = options_.camera;
     const Vector3 ahead = (camera.target - camera.position).normalized();
@@ -308,16 +312,20 @@ class Painter {
         camera.position + near * (ahead - 0.96 * half_width * right - 0.94 * half_height * up);
     const std::string text = fmt::format("{:.3f} s{}{}", picture_.time,
                                          options_.label.empty() ? "" : "  ", options_.label);
-    const Vector3 x = near * size * right;
-    const Vector3 y = near * size * up;
-    const Vector3 z = 1e-3 * near * size * ahead;
+    Matrix3 letters;
+    letters << near * size * right, near * size * up, 1e-3 * near * size * ahead;
+    // Behind it, from beyond the lower left corner: the whole width, a tenth of the height.
+    const double far = 1.01 * near;
+    const Vector3 edge =
+        camera.position + far * (ahead - 1.01 * half_width * right - 1.01 * half_height * up);
+    Matrix3 strip;
+    strip << 2.02 * far * half_width * right, 0.22 * far * half_height * up, far * ahead;
     return fmt::format(
+        "polygon {{ 5, <0,0>,<1,0>,<1,1>,<0,1>,<0,0> pigment {{ color rgbt <0.93,0.94,0.96,0.3> }} "
+        "finish {{ emission 1 diffuse 0 }} no_shadow {} }}\n"
         "text {{ internal 1 {}, 1, 0 pigment {{ color rgb 0.02 }} finish {{ emission 0.02 "
-        "diffuse "
-        "0 }} no_shadow matrix <{:.9g},{:.9g},{:.9g}, {:.9g},{:.9g},{:.9g}, {:.9g},{:.9g},{:.9g}, "
-        "{:.9g},{:.9g},{:.9g}> }}\n",
-        quoted(text), x.x(), x.y(), x.z(), y.x(), y.y(), y.z(), z.x(), z.y(), z.z(), corner.x(),
-        corner.y(), corner.z());
+        "diffuse 0 }} no_shadow {} }}\n",
+        matrix(strip, edge), quoted(text), matrix(letters, corner));
   }
 
   const Footage& footage_;

@@ -215,8 +215,8 @@ ThesisFigure bat_and_ball() {
               "{seed}), in which the ball sinks farthest into the bat after the hit. The bat "
               "is as heavy as the "
               "ball here, so that the exchange of 13.7 gives the ball the bat's own velocity; "
-              "left the original scheme, right event-driven at the same times. What bat and "
-              "ball have in common glows; the depth is printed.",
+              "left the original scheme, right event-driven at the same times. Where the two "
+              "overlap they are drawn translucent, and the depth is printed.",
           .caption =
               "Left, original: {detected} deep where the hit is found, {after} a frame "
               "later. Right, event-driven: never inside.",

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,9 +28,10 @@ class ToiQueryFormat {
   /// `header` is line `line` of the file; `file` is for messages. Throws `InputError`.
   ToiQueryFormat(std::string_view header, std::int64_t line, const std::string& file);
 
-  /// Memory that reading a row uses: one per thread.
+  /// Memory that reading a row uses: one per thread. Meshes are read once from their files.
   struct Scratch {
     std::vector<std::string_view> fields;
+    std::map<std::string, Shape> meshes;
   };
   /// Reads a row. Throws `BadField`.
   [[nodiscard]] ToiQuery read(std::string_view row, Scratch& scratch) const;
@@ -39,8 +41,8 @@ class ToiQueryFormat {
  private:
   static constexpr std::size_t numbers_per_body = 19;
 
-  /// Columns of one body: its numbers in the order of `number_names`, the optional shape, and the
-  /// points of a hull.
+  /// Columns of one body: its numbers in the order of `number_names`, the optional shape, and what
+  /// tells a hull, a mesh and a compound.
   struct BodyColumns {
     std::array<std::size_t, numbers_per_body> number{};
     std::array<std::string, numbers_per_body> name;
@@ -48,6 +50,10 @@ class ToiQueryFormat {
     std::string shape_name;
     std::size_t points = CsvColumns::absent;
     std::string points_name;
+    std::size_t file = CsvColumns::absent;
+    std::string file_name;
+    std::size_t parts = CsvColumns::absent;
+    std::string parts_name;
   };
 
   class Body;

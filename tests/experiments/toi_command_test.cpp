@@ -209,3 +209,56 @@ TEST_CASE("toi: a folder, a full disk", "[toi][fault]") {
   CHECK(full.exit_code == 1);
   CHECK(full.err.find("No space left") != std::string::npos);
 }
+
+TEST_CASE("toi answers for meshes and compounds as for the boxes that they are", "[toi][parts]") {
+  // A cube of half-size 0.5, as a box, as the triangles of a file told in half metres, as a solid,
+  // and as two halves; the gap of 1 m closes at t = 1 s.
+  const TemporaryFolder folder;
+  const std::string cube =
+      folder.file("cube.off",
+                  "OFF\n8 6 0\n-1 -1 -1\n1 -1 -1\n1 1 -1\n-1 1 -1\n-1 -1 1\n1 -1 1\n1 1 1\n-1 1 1\n"
+                  "4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n");
+  const std::string more = header + ",a_file,a_parts,b_file,b_parts\n";
+  const auto ask = [&](const std::string& shape, const std::string& file,
+                       const std::string& parts) {
+    std::string line = row(shape, {{"a_shape", shape}});
+    line.pop_back();
+    return line + "," + file + ",\"" + parts + "\",,\n";
+  };
+  const std::string halves =
+      "box 0.25 0.5 0.5 -0.25 0 0 1 0 0 0; box 0.25 0.5 0.5 0.25 0 0 0 1 0 0";
+  const Outcome outcome = toi(more + ask("box", "", "") + ask("mesh", cube, "") +
+                              ask("solid", cube, "") + ask("compound", "", halves));
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  const auto rows = answers(outcome);
+  REQUIRE(rows.size() == 5);
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    CAPTURE(rows[i][0]);
+    CHECK(rows[i][1] == "impact");
+    // Within a nanometre: the default tolerance is 1e-9 of the size.
+    CHECK(std::abs(std::stod(rows[i][2]) - 1.0) < 1e-9);
+    CHECK(std::stod(rows[i][2]) <= 1.0);
+    CHECK(std::stod(rows[i][5]) == 1.0);
+  }
+}
+
+TEST_CASE("what is no mesh and no compound is refused by its column", "[toi][parts]") {
+  const std::string more = header + ",a_file,a_parts\n";
+  const auto refusal = [&](const std::string& shape, const std::string& file,
+                           const std::string& parts) {
+    std::string line = row("bad", {{"a_shape", shape}});
+    line.pop_back();
+    const Outcome outcome = toi(more + line + "," + file + "," + parts + "\n");
+    CHECK(outcome.exit_code == 2);
+    return outcome.err;
+  };
+  using Catch::Matchers::Contains;
+  CHECK_THAT(refusal("mesh", "", ""), Contains("needs the column a_file"));
+  CHECK_THAT(refusal("mesh", "nowhere.off", ""), Contains("a_file") && Contains("nowhere.off"));
+  CHECK_THAT(refusal("compound", "", ""), Contains("needs the column a_parts"));
+  CHECK_THAT(refusal("compound", "", "box 1 1 1"), Contains("a part of 3 numbers"));
+  CHECK_THAT(refusal("compound", "", "hull 1 1 1 0 0 0 1 0 0 0"), Contains("a part 'hull'"));
+  CHECK_THAT(refusal("compound", "", "box 1 0 1 0 0 0 1 0 0 0"), Contains("a_parts"));
+  CHECK_THAT(refusal("compound", "", "box 1 1 1 0 0 0 2 0 0 0"), Contains("a_parts"));
+}

@@ -147,6 +147,23 @@ TEST_CASE("four free balls collapse, wherever they are going together", "[accumu
   }
 }
 
+TEST_CASE("a collapse that is as good as over holds no ball in the air", "[accumulation]") {
+  // A ball goes on over the one below it, which a heavy one squeezes: its way along the surface is
+  // not short because the collapse ends soon.
+  const Simulation sim = run(
+      "duration = 1.0\nframe = 0.07016015481961253\nG = 9.8\n" + plane("floor", "[0, 1, 0]") +
+      ball("low", 0.2560236975890136, 0.9114078598607384, "[0, 0.2560236975890173, 0]") +
+      ball("heavy", 0.2560236975890136, 0.619922288551173, "[0, 0.7680710927670518, 0]",
+           "[0, 0, 0]", 954.1045225895784) +
+      ball("high", 0.3223983172974174, 1.0, "[0, 1.346493107653491, 0]",
+           "[0.9452236659396526, -0.5946669101050519, 0.8950491986957052]", 188.88144978170737));
+  tests::check_explained(sim.result.ledger);
+  const double height = sim.result.state[3].pose.position.y();
+  const bool fell = height < 1.0;
+  CAPTURE(sim.result.reason, height);
+  CHECK((fell || sim.result.status == RunStatus::stopped));
+}
+
 TEST_CASE("a finite sequence of impacts is not called infinite", "[accumulation]") {
   // A wall, a ball, and one of 100^k times its mass: floor(pi 10^k) impacts [Galperin2003].
   for (const auto& [mass, digits] : {std::pair{1e6, 3141}, std::pair{1e8, 31415}}) {

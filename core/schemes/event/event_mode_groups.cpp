@@ -15,6 +15,8 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Of the speed along the normal that is rest: along a curved surface, too.
+constexpr double still_part = 1e-3;
 
 double finite_radius(const Shape& shape) {
   const double radius = bounding_radius(shape);
@@ -144,7 +146,10 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
       const Vector3& n = manifold.normal;
       const double mu = run_.model.friction(a, b);
       const Vector3 drift = mu > 0.0 ? Vector3(belt(b, n) - belt(a, n)) : Vector3(Vector3::Zero());
-      found.group.patches.push_back({found.place(a), found.place(b), manifold, slow, mu, drift});
+      // However soon a collapse ends: that makes no way along a surface short.
+      const double still = still_part * rest_speed(a, b, at_a, at_b, {});
+      found.group.patches.push_back(
+          {found.place(a), found.place(b), manifold, slow, mu, drift, still});
     }
   }
   return found;

@@ -1,0 +1,179 @@
+#include "experiments/random/scene_watch.hpp"
+
+#include "core/impact_check.hpp"
+#include "experiments/random/plain_overlap.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kairos::experiments {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+/// In all frames, of which there are 64 and one.
+constexpr std::int64_t most_events = 66 * SceneWatch::most_in_frame;
+/// Bodies in contact are no farther apart than so much of their size: hops that are taken for rest
+/// are below 1e-10 of it.
+constexpr double in_touch = 1e-6;
+
+double radius_of(const Shape& shape) {
+  const double radius = bounding_radius(shape);
+  return std::isfinite(radius) ? radius : 0.0;
+}
+
+/// A ball or box that reaches farther by `more`; nothing where it is something else.
+bool grow(Shape& shape, double more) {
+  if (auto* ball = std::get_if<Sphere>(&shape)) {
+    ball->radius += more;
+    return true;
+  }
+  if (auto* box = std::get_if<Box>(&shape)) {
+    box->half_extents.array() += more;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void SceneWatch::frame(const Frame& frame) {
+  check_impacts();
+  check_overlap(frame.bodies, frame.time);
+  check_contacts(frame.bodies, frame.time);
+  check_energy(frame);
+  if (frame.index > most_events) {
+    throw BrokenPromise{Fate::hang, "frames without end", frame.time.seconds};
+  }
+}
+
+void SceneWatch::event(const Event& event) {
+  if (!at_once_.empty() && at_once_.front().time != event.time) {
+    check_impacts();
+  }
+  const std::pair pair{std::min(event.a, event.b), std::max(event.a, event.b)};
+  if (event.kind == EventKind::impact) {
+    check_pair(event.a, event.before_a, event.b, event.before_b, event.time);
+    at_once_.push_back(event);
+  } else if (event.kind == EventKind::contact_begins) {
+    in_contact_.insert(pair);
+  } else if (event.kind == EventKind::contact_ends) {
+    in_contact_.erase(pair);
+  }
+  if (++events_ > most_events) {
+    throw BrokenPromise{Fate::hang, fmt::format("{} events", events_), event.time.seconds};
+  }
+}
+
+void SceneWatch::check_energy(const Frame& frame) const {
+  const double allowed = 8.0 * epsilon * frame.ledger.flow();
+  if (std::abs(frame.ledger.unexplained()) > allowed) {
+    throw BrokenPromise{
+        Fate::ledger,
+        fmt::format("{} J unexplained, allowed {}", frame.ledger.unexplained(), allowed),
+        frame.time.seconds};
+  }
+}
+
+void SceneWatch::check_impacts() {
+  for (const Event& event : at_once_) {
+    if (event.contact.friction > 0.0) {
+      continue;  // restitution is then one of work, not of velocities
+    }
+    const double e = model_->restitution(event.a, event.b);
+    if (const std::string broken = broken_restitution(event, e, handed_on(event));
+        !broken.empty()) {
+      throw BrokenPromise{Fate::law, names(event.a, event.b) + ": " + broken, event.time.seconds};
+    }
+  }
+  at_once_.clear();
+}
+
+/// Of what an impact gave to each of the two, N s.
+double SceneWatch::momentum(const Event& event) const {
+  double most = 0.0;
+  for (const auto& [i, before, after] : {std::tuple{event.a, &event.before_a, &event.after_a},
+                                         std::tuple{event.b, &event.before_b, &event.after_b}}) {
+    if (model_->is_free(i)) {
+      most = std::max(
+          most, model_->inertia(i).mass * (after->twist.linear - before->twist.linear).norm());
+    }
+  }
+  return most;
+}
+
+/// Rounding of a rebound among several at once, m/s: impulses from two sides nearly cancel, and
+/// each is known to some epsilon of the greatest. What one does to the velocity of the contact is
+/// 1/m + r^2/I of it.
+double SceneWatch::handed_on(const Event& event) const {
+  if (at_once_.size() < 2) {
+    return 0.0;
+  }
+  double greatest = 0.0;
+  for (const Event& other : at_once_) {
+    greatest = std::max(greatest, momentum(other));
+  }
+  double response = 0.0;
+  for (const auto& [i, state] : {std::pair{event.a, &event.after_a}, {event.b, &event.after_b}}) {
+    if (!model_->is_free(i)) {
+      continue;
+    }
+    const BodyInertia& inertia = model_->inertia(i);
+    const double arm = (event.contact.point - state->pose.position).norm();
+    response += 1.0 / inertia.mass;
+    response += inertia.rotates ? arm * arm / inertia.principal.minCoeff() : 0.0;
+  }
+  return 64.0 * epsilon * greatest * response;
+}
+
+void SceneWatch::check_overlap(std::span<const BodyState> bodies, Instant t) const {
+  for (const auto& [a, b] : model_->pairs()) {
+    if (model_->is_field(a) || model_->is_field(b) || !(model_->is_free(a) || model_->is_free(b))) {
+      continue;
+    }
+    check_pair(a, bodies[a], b, bodies[b], t);
+  }
+}
+
+/// By geometry of its own, which no detector shares.
+void SceneWatch::check_pair(BodyIndex a, const BodyState& state_a, BodyIndex b,
+                            const BodyState& state_b, Instant t) const {
+  const double depth = plain_depth(model_->shape(a), state_a.pose, model_->shape(b), state_b.pose);
+  const double scale = state_a.pose.position.norm() + state_b.pose.position.norm() +
+                       radius_of(model_->shape(a)) + radius_of(model_->shape(b));
+  // Bodies in touch may stay so to 16 times the bound of a gap's rounding, 12 eps of what it is a
+  // sum of (ccd/README.md, a start in touch); less is no overlap that could be told from none.
+  constexpr double hidden = 16.0 * 12.0 * epsilon;
+  if (depth > hidden * scale) {
+    throw BrokenPromise{Fate::overlap,
+                        fmt::format("'{}' is {:.3g} m inside '{}'", model_->body(b).name, depth,
+                                    model_->body(a).name),
+                        t.seconds};
+  }
+}
+
+/// Bodies that are told to be in contact are: one that reaches a little farther overlaps the other.
+void SceneWatch::check_contacts(std::span<const BodyState> bodies, Instant t) const {
+  for (const auto& [a, b] : in_contact_) {
+    Shape shape_a = model_->shape(a);
+    Shape shape_b = model_->shape(b);
+    const double more = in_touch * (radius_of(shape_a) + radius_of(shape_b));
+    if (!grow(shape_a, more) && !grow(shape_b, more)) {
+      continue;
+    }
+    if (!(plain_depth(shape_a, bodies[a].pose, shape_b, bodies[b].pose) > 0.0)) {
+      throw BrokenPromise{
+          Fate::apart,
+          fmt::format("{} are in contact, and more than {:.3g} m apart", names(a, b), more),
+          t.seconds};
+    }
+  }
+}
+
+std::string SceneWatch::names(BodyIndex a, BodyIndex b) const {
+  return fmt::format("'{}' and '{}'", model_->body(a).name, model_->body(b).name);
+}
+
+}  // namespace kairos::experiments

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "core/model.hpp"
+#include "core/recorder.hpp"
+#include "experiments/random/scene_trial.hpp"
+
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace kairos::experiments {
+
+/// Thrown where a run breaks a promise.
+struct BrokenPromise {
+  Fate fate;
+  std::string what;
+  double time;  ///< s
+};
+
+/// Holds a run to what it promises, by checks that share nothing with it; ends it at the first
+/// promise that is broken.
+class SceneWatch : public Recorder {
+ public:
+  /// More events in a frame than any of these scenes has: they last for a few crossings of the
+  /// room. A run that takes more must stop by itself.
+  static constexpr std::int64_t most_in_frame = 20'000;
+
+  void begin(const Model& model) override { model_ = &model; }
+  void frame(const Frame& frame) override;
+  void event(const Event& event) override;
+
+ private:
+  void check_energy(const Frame& frame) const;
+  /// Impacts of one instant: each as its law says.
+  void check_impacts();
+  [[nodiscard]] double handed_on(const Event& event) const;
+  [[nodiscard]] double momentum(const Event& event) const;
+  void check_overlap(std::span<const BodyState> bodies, Instant t) const;
+  void check_pair(BodyIndex a, const BodyState& state_a, BodyIndex b, const BodyState& state_b,
+                  Instant t) const;
+  void check_contacts(std::span<const BodyState> bodies, Instant t) const;
+  [[nodiscard]] std::string names(BodyIndex a, BodyIndex b) const;
+
+  const Model* model_ = nullptr;
+  std::int64_t events_ = 0;
+  std::vector<Event> at_once_;  ///< impacts of one instant, not yet checked
+  std::set<std::pair<BodyIndex, BodyIndex>> in_contact_;
+};
+
+}  // namespace kairos::experiments
