@@ -2,6 +2,7 @@
 
 #include "core/archive.hpp"
 #include "core/error.hpp"
+#include "core/free_memory.hpp"
 #include "core/joints/constrained_stepper.hpp"
 #include "core/schemes/shared/journaled_stepper.hpp"
 #include "simulation/cold_restarts.hpp"
@@ -28,6 +29,9 @@ constexpr double most_tolerance = 1e12;
 /// How many steps, each as far off the joints as its tolerance, a multistep method goes on from
 /// states that are not put back: begun anew, it starts at order 1.
 constexpr double steps_of_drift = 100.0;
+
+/// Fewer bodies fit wherever the program does: nobody is asked how much is free.
+constexpr std::size_t few_bodies = 4096;
 
 /// The names of a choice, resolved.
 struct Plan {
@@ -215,6 +219,12 @@ std::string why_refused(const Model& model, const RunChoice& choice, const PlugI
 
 RunResult simulate(const Model& model, const RunChoice& choice, Recorder& recorder,
                    const Continuation& continuation, const PlugIns& own) {
+  if (model.size() > few_bodies) {
+    if (const std::string why = why_no_room(model.size(), bytes_in_run, free_memory());
+        !why.empty()) {
+      throw InputError(model.scene().path, 0, "", why);
+    }
+  }
   Plan plan = make_plan(model, choice, own);
   if (const std::string reason = refusal(model, plan); !reason.empty()) {
     throw InputError(model.scene().path, 0, "", reason);
