@@ -17,7 +17,7 @@ constexpr double bodies_to_a_cell = 0.36;
 
 }  // namespace
 
-CellLayout::CellLayout(const Model& model, double tolerance) {
+CellLayout::CellLayout(const Model& model, double tolerance, const CellSize& asked) {
   std::vector<double> radii;
   Vector3 low = Vector3::Zero();
   Vector3 high = Vector3::Zero();
@@ -48,7 +48,7 @@ CellLayout::CellLayout(const Model& model, double tolerance) {
   }
   // A detector leaves at most its tolerance; twice that is what no impact law acts across.
   slack = 1e-3 * radius + 4.0 * tolerance;
-  margin = radius / 16.0;
+  margin = asked.margin * radius / 16.0;
   const double least = 2.0 * (radius + slack + margin);
   Vector3 size = (high - low).cwiseMax(least);
   const Vector3 period =
@@ -56,7 +56,7 @@ CellLayout::CellLayout(const Model& model, double tolerance) {
   for (int k = 0; k < 3; ++k) {
     size[k] = period[k] > 0.0 ? period[k] : size[k];
   }
-  const double usual = std::max(least, cube_root(size.prod() * bodies_to_a_cell / n));
+  const double usual = std::max(least, asked.width * cube_root(size.prod() * bodies_to_a_cell / n));
   width.setConstant(usual);
   farthest = 0x1p36 * margin;
   // Not more cells than bodies call for: along the longest axis they then coincide.
@@ -152,13 +152,10 @@ void CellGrid::remove(const CellIndex& cell, BodyIndex i) {
   }
 }
 
-inline void CellGrid::append(std::size_t place, BodyIndex i, std::vector<BodyIndex>& out) const {
-  const Cell* cell = &cells_[place];
+inline void CellGrid::append(const Cell* cell, std::vector<Id>& out) const {
   while (true) {
     for (std::uint32_t k = 0; k < cell->count; ++k) {
-      if (cell->bodies[k] != i) {
-        out.push_back(cell->bodies[k]);
-      }
+      out.push_back(cell->bodies[k]);
     }
     if (cell->next == none) {
       return;
@@ -167,13 +164,12 @@ inline void CellGrid::append(std::size_t place, BodyIndex i, std::vector<BodyInd
   }
 }
 
-void CellGrid::around(const CellIndex& cell, BodyIndex i, std::vector<BodyIndex>& out) const {
-  block(cell, {1, 1, 1}, i, out);
+void CellGrid::around(const CellIndex& cell, std::vector<Id>& out) const {
+  block(cell, {1, 1, 1}, out);
 }
 
 /// Bodies in the cells at most so many along each axis from a cell.
-void CellGrid::block(const CellIndex& cell, const CellIndex& wide, BodyIndex i,
-                     std::vector<BodyIndex>& out) const {
+void CellGrid::block(const CellIndex& cell, const CellIndex& wide, std::vector<Id>& out) const {
   CellIndex first{};
   for (std::size_t k = 0; k < 3; ++k) {
     first[k] = turned(cell[k] - wide[k], k);
@@ -182,16 +178,16 @@ void CellGrid::block(const CellIndex& cell, const CellIndex& wide, BodyIndex i,
   for (std::int64_t dz = -wide[2]; dz <= wide[2]; ++dz, z = next(z, 2)) {
     std::int64_t y = first[1];
     for (std::int64_t dy = -wide[1]; dy <= wide[1]; ++dy, y = next(y, 1)) {
+      const Cell* const row = &cells_[at(0, y, z)];
       std::int64_t x = first[0];
       for (std::int64_t dx = -wide[0]; dx <= wide[0]; ++dx, x = next(x, 0)) {
-        append(at(x, y, z), i, out);
+        append(row + x, out);
       }
     }
   }
 }
 
-void CellGrid::entered(const CellIndex& before, const CellIndex& now, BodyIndex i,
-                       std::vector<BodyIndex>& out) const {
+void CellGrid::entered(const CellIndex& before, const CellIndex& now, std::vector<Id>& out) const {
   // As a rule it goes one cell on along one axis: a layer of nine.
   std::size_t axis = 3;
   std::int64_t steps = 0;
@@ -204,27 +200,25 @@ void CellGrid::entered(const CellIndex& before, const CellIndex& now, BodyIndex 
     CellIndex wide{1, 1, 1};
     layer[axis] += now[axis] - before[axis];
     wide[axis] = 0;
-    return block(layer, wide, i, out);
+    return block(layer, wide, out);
   }
   const auto known = [&](std::size_t k, std::int64_t c) { return std::abs(c - before[k]) <= 1; };
   for (std::int64_t z = now[2] - 1; z <= now[2] + 1; ++z) {
     for (std::int64_t y = now[1] - 1; y <= now[1] + 1; ++y) {
       for (std::int64_t x = now[0] - 1; x <= now[0] + 1; ++x) {
         if (!(known(0, x) && known(1, y) && known(2, z))) {
-          append(place(x, y, z), i, out);
+          append(&cells_[place(x, y, z)], out);
         }
       }
     }
   }
 }
 
-void CellGrid::within(const CellIndex& low, const CellIndex& high,
-                      std::vector<BodyIndex>& out) const {
-  const BodyIndex nobody = none;
+void CellGrid::within(const CellIndex& low, const CellIndex& high, std::vector<Id>& out) const {
   for (std::int64_t z = low[2]; z <= high[2]; ++z) {
     for (std::int64_t y = low[1]; y <= high[1]; ++y) {
       for (std::int64_t x = low[0]; x <= high[0]; ++x) {
-        append(place(x, y, z), nobody, out);
+        append(&cells_[place(x, y, z)], out);
       }
     }
   }

@@ -10,10 +10,17 @@ namespace kairos::ccd {
 
 using CellIndex = std::array<std::int64_t, 3>;
 
+/// Multiples of the size of cells that costs least: a width that is too small is made as large as
+/// it must be.
+struct CellSize {
+  double width = 1.0;   ///< > 0
+  double margin = 1.0;  ///< > 0
+};
+
 /// How large cells are, from the bodies that a model starts with.
 struct CellLayout {
   /// `tolerance` as in `NeighbourhoodFactory`.
-  CellLayout(const Model& model, double tolerance);
+  CellLayout(const Model& model, double tolerance, const CellSize& asked);
 
   double radius = 0.0;  ///< greatest bounding radius of bodies in cells, m
   double slack = 0.0;   ///< what detectors may leave between bodies that touch, errors included, m
@@ -31,6 +38,8 @@ struct CellLayout {
 /// Bodies by cell, on a torus: cells a whole number of turns apart are one.
 class CellGrid {
  public:
+  using Id = std::uint32_t;  ///< of a body
+
   explicit CellGrid(const std::array<std::int64_t, 3>& counts);
 
   [[nodiscard]] std::int64_t count(std::size_t axis) const { return count_[axis]; }
@@ -38,16 +47,14 @@ class CellGrid {
   void insert(const CellIndex& cell, BodyIndex i);
   void remove(const CellIndex& cell, BodyIndex i);
 
-  /// Bodies in the cell and its 26 neighbours, i itself left out, appended.
-  void around(const CellIndex& cell, BodyIndex i, std::vector<BodyIndex>& out) const;
+  /// Bodies in the cell and its 26 neighbours, appended.
+  void around(const CellIndex& cell, std::vector<Id>& out) const;
   /// Of those around `now`, the ones that are not around `before`.
-  void entered(const CellIndex& before, const CellIndex& now, BodyIndex i,
-               std::vector<BodyIndex>& out) const;
+  void entered(const CellIndex& before, const CellIndex& now, std::vector<Id>& out) const;
   /// Bodies in all cells from `low` to `high`.
-  void within(const CellIndex& low, const CellIndex& high, std::vector<BodyIndex>& out) const;
+  void within(const CellIndex& low, const CellIndex& high, std::vector<Id>& out) const;
 
  private:
-  using Id = std::uint32_t;
   static constexpr Id none = ~Id{0};
   static constexpr std::uint32_t room = 2;
   /// Small, for most hold none or one. What finds no room is in a chain of further ones.
@@ -76,9 +83,8 @@ class CellGrid {
     return at(turned(x, 0), turned(y, 1), turned(z, 2));
   }
   Cell& with_room(Cell& first);
-  void block(const CellIndex& cell, const CellIndex& wide, BodyIndex i,
-             std::vector<BodyIndex>& out) const;
-  void append(std::size_t place, BodyIndex i, std::vector<BodyIndex>& out) const;
+  void block(const CellIndex& cell, const CellIndex& wide, std::vector<Id>& out) const;
+  void append(const Cell* cell, std::vector<Id>& out) const;
 
   std::array<std::int64_t, 3> count_{};
   std::array<std::int64_t, 3> mask_{};  ///< 0: the count is no power of two

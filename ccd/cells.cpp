@@ -27,8 +27,8 @@ double time_to_rise(double v, double a, double rise) {
 
 class Cells final : public Neighbourhood {
  public:
-  Cells(const Model& model, double tolerance)
-      : layout_(model, tolerance),
+  Cells(const Model& model, double tolerance, const CellSize& size)
+      : layout_(model, tolerance, size),
         grid_(layout_.counts),
         large_(model, make_dynamic_tree(model.size()), tolerance),
         places_(model.size()),
@@ -61,8 +61,8 @@ class Cells final : public Neighbourhood {
   void near(BodyIndex i, std::vector<Neighbour>& out) override {
     if (places_[i].at == Place::in_cell) {
       found_.clear();
-      grid_.around(places_[i].cell, i, found_);
-      tell(places_[i].cell, out);
+      grid_.around(places_[i].cell, found_);
+      tell(i, out);
       large_.boxes().overlapping(reach(places_[i].cell), out);
     } else if (places_[i].at == Place::in_box) {
       large_.near(i, out);
@@ -84,15 +84,15 @@ class Cells final : public Neighbourhood {
     if (now != before) {
       move(i, now);
       found_.clear();
-      grid_.entered(before, now, i, found_);
-      tell(now, out);
+      grid_.entered(before, now, found_);
+      tell(i, out);
       const Aabb known = reach(before);
       boxes_.clear();
       large_.boxes().overlapping(reach(now), boxes_);
       for (const Neighbour& j : boxes_) {
         const Aabb& swept = large_.swept(j.body);
         const Vector3 shift =
-            is_zero(j.image) ? Vector3(Vector3::Zero()) : periodic_->shift(j.image);
+            periodic_ == nullptr ? Vector3(Vector3::Zero()) : periodic_->shift(j.image);
         if (!known.overlaps({swept.lower + shift, swept.upper + shift})) {
           out.push_back(j);
         }
@@ -228,12 +228,20 @@ class Cells final : public Neighbourhood {
     places_[i] = {to, Place::in_cell};
   }
 
-  /// Appends whom `found_` holds, each as the image that is around this cell: bodies that fewer
-  /// than four cells are apart on the torus have one.
-  void tell(const CellIndex& cell, std::vector<Neighbour>& out) const {
-    for (const BodyIndex j : found_) {
+  /// Appends whom `found_` holds beside i, each as the image that is around the cell of i: bodies
+  /// that fewer than four cells are apart on the torus have one.
+  void tell(BodyIndex i, std::vector<Neighbour>& out) const {
+    const CellIndex& cell = places_[i].cell;
+    for (const CellGrid::Id j : found_) {
+      if (j == i) {
+        continue;
+      }
+      if (periodic_ == nullptr) {
+        out.push_back({j});
+        continue;
+      }
       Neighbour found{j};
-      for (std::size_t k = 0; periodic_ != nullptr && k < 3; ++k) {
+      for (std::size_t k = 0; k < 3; ++k) {
         const std::int64_t apart = cell[k] - places_[j].cell[k];
         if (periodic_->along[k] && (apart < -1 || apart > 1)) {
           // A whole number of turns and one cell at most.
@@ -309,13 +317,19 @@ class Cells final : public Neighbourhood {
   std::vector<char> usual_;
   const PeriodicBox* periodic_ = nullptr;
   std::vector<Neighbour> boxes_;  ///< scratch
-  std::vector<BodyIndex> found_;
+  std::vector<CellGrid::Id> found_;
 };
 
 }  // namespace
 
 std::unique_ptr<Neighbourhood> make_cells(const Model& model, double tolerance) {
-  return std::make_unique<Cells>(model, tolerance);
+  return std::make_unique<Cells>(model, tolerance, CellSize{});
+}
+
+NeighbourhoodFactory cells_of(const CellSize& size) {
+  return [size](const Model& model, double tolerance) {
+    return std::make_unique<Cells>(model, tolerance, size);
+  };
 }
 
 }  // namespace kairos::ccd

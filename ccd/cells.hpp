@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ccd/cell_grid.hpp"
 #include "core/model.hpp"
 #include "core/neighbourhood.hpp"
 
@@ -18,5 +19,8 @@ namespace kairos::ccd {
 ///
 /// Memory: up to some 500 bytes a body, allocated at the start.
 [[nodiscard]] std::unique_ptr<Neighbourhood> make_cells(const Model& model, double tolerance);
+
+/// Cells of another size than the one that costs least. No result depends on it.
+[[nodiscard]] NeighbourhoodFactory cells_of(const CellSize& size);
 
 }  // namespace kairos::ccd

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <vector>
 
 namespace kairos::integrators {
@@ -20,11 +21,15 @@ struct Leg {
   bool rotates = false;
   bool tumbles = false;          ///< its angular velocity is not constant
   double bounding_radius = 0.0;  ///< m
-  FreeTop top;
+  std::unique_ptr<FreeTop> top;  ///< null until it has tumbled: most never do
 
   void persist(Archive& archive) {
     archive(before, acceleration, rotates, tumbles, bounding_radius);
-    archive(top);
+    FreeTop whole = top ? *top : FreeTop();
+    archive(whole);
+    if (archive.reading() && tumbles) {
+      top = std::make_unique<FreeTop>(whole);
+    }
   }
 };
 
@@ -50,7 +55,7 @@ class ClosedForm final : public Stepper {
   }
 
   void start(const Island& island, Instant t, std::span<const BodyState> states) override {
-    legs_.assign(states.size(), {});
+    legs_ = std::vector<Leg>(states.size());
     for (std::size_t i = 0; i < states.size(); ++i) {
       legs_[i].rotates = island.inertia[i].rotates;
       legs_[i].bounding_radius = island.inertia[i].bounding_radius;
@@ -122,12 +127,15 @@ class ClosedForm final : public Stepper {
       Leg& leg = legs_[i];
       leg.tumbles = leg.rotates && !is_steady(island.inertia[i], states[i]);
       if (leg.tumbles) {
-        leg.top = FreeTop(island.inertia[i], states[i].pose.orientation, states[i].twist.angular);
-        if (!leg.top.resolved()) {
+        if (leg.top == nullptr) {
+          leg.top = std::make_unique<FreeTop>();
+        }
+        *leg.top = FreeTop(island.inertia[i], states[i].pose.orientation, states[i].twist.angular);
+        if (!leg.top->resolved()) {
           return "closed-form: a body turns about its middle axis but for less than doubles "
                  "resolve";
         }
-        longest_ = std::min(longest_, leg.top.segment());
+        longest_ = std::min(longest_, leg.top->segment());
       }
     }
     fresh_ = false;
@@ -142,7 +150,7 @@ class ClosedForm final : public Stepper {
       state.twist.linear[axis] = end.velocity.rounded();
     }
     if (leg.tumbles) {
-      const FreeTop::Rotation rotation = leg.top.at((start_ + h_) - epoch_);
+      const FreeTop::Rotation rotation = leg.top->at((start_ + h_) - epoch_);
       state.pose.orientation = rotation.orientation;
       state.twist.angular = rotation.angular_velocity;
     } else if (leg.rotates) {
@@ -153,7 +161,7 @@ class ClosedForm final : public Stepper {
   // Two unit quaternions e apart turn a point at distance r to places at most 2 r e apart; another
   // factor of 2 normalises the polynomial; 64 eps covers the rounding of its nodes.
   void tumble(const Leg& leg, Motion& motion) const {
-    leg.top.fit(start_ - epoch_, h_, motion);
+    leg.top->fit(start_ - epoch_, h_, motion);
     // A motion starts at the state bit for bit: the fit is moved by its roundoff, to the state's
     // side of the quaternions.
     const Vector4 q = as_vector(leg.before.pose.orientation);
@@ -164,7 +172,7 @@ class ClosedForm final : public Stepper {
     }
     motion.quaternion[0] = q;
     motion.angular_velocity[0] = leg.before.twist.angular;
-    motion.error_radius = leg.bounding_radius * (4.0 * leg.top.fit_error(h_) +
+    motion.error_radius = leg.bounding_radius * (4.0 * leg.top->fit_error(h_) +
                                                  64.0 * std::numeric_limits<double>::epsilon());
   }
 

@@ -205,7 +205,8 @@ void GasAverages::look(const Frame& frame) {
     way += (state.pose.position - centre.position - origin_[k]).squaredNorm();
     open_->kinetic += 0.5 * inertia.mass * (state.twist.linear - centre.velocity).squaredNorm();
     if (inertia.rotates) {
-      const Vector3 w = state.pose.orientation.conjugate() * state.twist.angular;
+      const Vector3 w =
+          inertia.principal_axes(state.pose.orientation).conjugate() * state.twist.angular;
       open_->spin += 0.5 * inertia.principal.cwiseProduct(w.cwiseAbs2());
     }
   }

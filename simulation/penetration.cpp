@@ -38,13 +38,14 @@ bool PenetrationProbe::can_penetrate(BodyIndex a, BodyIndex b) const {
   return !model_.is_field(a) && !model_.is_field(b) && model_.interacts(a, b);
 }
 
-/// Pairs that could penetrate, in the order of the model's, until `visit` says that it is enough.
+/// Pairs that are near each other, those that could penetrate among them, in the order of the
+/// model's, until `visit` says that it is enough.
 template <typename Visit>
 void PenetrationProbe::for_each_near_pair(std::span<const BodyState> bodies,
                                           const Visit& visit) const {
   if (!boxes_) {
     for (const auto& [a, b] : model_.pairs()) {
-      if (can_penetrate(a, b) && !visit(a, b)) {
+      if (!visit(a, b)) {
         return;
       }
     }
@@ -61,7 +62,7 @@ void PenetrationProbe::for_each_near_pair(std::span<const BodyState> bodies,
     near.clear();
     boxes_->near(a, at[a], near);
     for (const Neighbour& b : near) {
-      if (a < b.body && can_penetrate(a, b.body) && !visit(a, b.body)) {
+      if (a < b.body && !visit(a, b.body)) {
         return;
       }
     }

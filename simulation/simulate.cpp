@@ -2,6 +2,7 @@
 
 #include "core/archive.hpp"
 #include "core/error.hpp"
+#include "core/free_memory.hpp"
 #include "core/joints/constrained_stepper.hpp"
 #include "core/schemes/shared/journaled_stepper.hpp"
 #include "integrators/dormand_prince.hpp"
@@ -32,6 +33,9 @@ constexpr double steps_of_drift = 100.0;
 
 /// Of the integrator of bodies that turn while they touch: it shows in gaps of 1e-10 of their size.
 constexpr StepperOptions tight{1e-12, 1e-13};
+
+/// Fewer bodies fit wherever the program does: nobody is asked how much is free.
+constexpr std::size_t few_bodies = 4096;
 
 /// The names of a choice, resolved.
 struct Plan {
@@ -222,6 +226,12 @@ std::string why_refused(const Model& model, const RunChoice& choice, const PlugI
 
 RunResult simulate(const Model& model, const RunChoice& choice, Recorder& recorder,
                    const Continuation& continuation, const PlugIns& own) {
+  if (model.size() > few_bodies) {
+    if (const std::string why = why_no_room(model.size(), bytes_in_run, free_memory());
+        !why.empty()) {
+      throw InputError(model.scene().path, 0, "", why);
+    }
+  }
   Plan plan = make_plan(model, choice, own);
   if (const std::string reason = refusal(model, plan); !reason.empty()) {
     throw InputError(model.scene().path, 0, "", reason);

@@ -1,6 +1,7 @@
 #include "core/reading/many_reader.hpp"
 
 #include "core/exponential.hpp"
+#include "core/free_memory.hpp"
 #include "core/placement.hpp"
 #include "core/random.hpp"
 #include "core/reading/scene_keys.hpp"
@@ -24,8 +25,8 @@ constexpr std::string_view orientations[] = {"same", "random"};
 constexpr Range factor{.lowest = 1e-6, .highest = 1e6};
 constexpr Range speed_deviation{.lowest = 0.0, .highest = 1e11, .unit = "m/s"};
 constexpr Range spin_deviation{.lowest = 0.0, .highest = 1e11, .unit = "rad/s"};
-/// A run takes some kilobytes of memory for each body.
-constexpr std::int64_t most_bodies = 1'000'000;
+/// Of all in one table.
+constexpr std::int64_t most_bodies = 10'000'000;
 
 /// Independent streams of random numbers, so that one choice leaves the others' draws alone.
 enum Stream : std::uint64_t { sizes_stream = 1, velocity_stream, spin_stream, turn_stream };
@@ -166,8 +167,12 @@ void read_many(const Item& item, const BodyDefaults& defaults, std::vector<Body>
   refuse_unknown_keys(table);
   const Body body = read_template(item, table, defaults);
   const std::string& name = read_name(table.need("name", "a name; bodies are NAME-1, NAME-2, ..."));
-  const auto count =
-      static_cast<std::size_t>(table.need("count", "how many bodies").whole_number(1, most_bodies));
+  const Item counted = table.need("count", "how many bodies");
+  const auto count = static_cast<std::size_t>(counted.whole_number(1, most_bodies));
+  const double bytes_a_body = bytes_in_model + bytes_in_run;
+  if (const std::string why = why_no_room(count, bytes_a_body, free_memory()); !why.empty()) {
+    counted.fail(why);
+  }
   const Region region = read_region(table);
   const auto seed_item = table.find("seed");
   const std::uint64_t seed = seed_item ? static_cast<std::uint64_t>(seed_item->whole_number(

@@ -34,9 +34,9 @@ constexpr ShapeKind kinds[] = {
     {"compound", {"part"}},
     {"height-field", {"heights", "spacing"}},
 };
-constexpr std::string_view size_keys[] = {"radius", "half_extents", "length",  "height",
-                                          "points", "file",         "unit",    "rounding",
-                                          "solid",  "part",         "heights", "spacing"};
+constexpr std::string_view all_keys[] = {"shape",  "radius",  "half_extents", "length",   "height",
+                                         "points", "file",    "unit",         "rounding", "solid",
+                                         "part",   "heights", "spacing"};
 /// Points of a hull that are written in the scene.
 constexpr std::size_t most_points = 100'000;
 constexpr Range unit_range{.lowest = 0.0, .highest = 1e6, .above = true, .unit = "m"};
@@ -132,9 +132,11 @@ Shape read_mesh_shape(const TableReader& table, const std::string& directory, bo
 
 }  // namespace
 
+std::span<const std::string_view> shape_keys() { return all_keys; }
+
 Shape read_shape(const TableReader& table, const std::string& directory, bool moves_freely) {
   const ShapeKind& kind = shape_kind(table);
-  for (const std::string_view key : size_keys) {
+  for (const std::string_view key : shape_keys().subspan(1)) {
     if (table.has(key) &&
         std::find(std::begin(kind.keys), std::end(kind.keys), key) == std::end(kind.keys)) {
       table.fail(key, fmt::format("a {} has no {}", kind.name, key));

@@ -25,6 +25,7 @@ struct BenchCommand {
   int rallies = 200;
   std::size_t pairs = std::size_t{1} << 18;  // more than a branch predictor learns
   std::vector<std::size_t> balls{64, 512, 4096};
+  std::vector<std::size_t> boxes{64, 512};
   AccuracyOptions accuracy;
 
   void run() const {
@@ -36,7 +37,7 @@ struct BenchCommand {
       return;
     }
     if (name == "gas") {
-      bench_gas(balls, rounds);
+      bench_gas(balls, boxes, rounds);
       return;
     }
     if (name == "contact") {
@@ -92,6 +93,10 @@ void add_bench_command(CLI::App& app) {
       ->check(whole_number(1, 100'000))
       ->capture_default_str();
   bench->add_option("--balls", options->balls, "gas: how many, one gas for each number")
+      ->check(whole_number(2, 10'000'000))
+      ->type_name("N...")
+      ->capture_default_str();
+  bench->add_option("--boxes", options->boxes, "gas: how many boxes, one gas for each number")
       ->check(whole_number(2, 10'000'000))
       ->type_name("N...")
       ->capture_default_str();

@@ -1,12 +1,15 @@
 #include "python/bindings/query_bodies.hpp"
 
+#include "core/reading/shape_reader.hpp"
 #include "simulation/query_limits.hpp"
 
 #include <fmt/format.h>
 
 #include "python/bindings/row_loop.hpp"
+#include "python/bindings/values.hpp"
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 
 namespace py = pybind11;
@@ -69,6 +72,14 @@ double greatest(const RowsOfNumbers& rows) {
 /// Rows of two arrays that go together: one row stands for all.
 std::size_t rows_of(std::size_t a, std::size_t b) { return a == 1 ? b : a; }
 
+GivenShape given_shape(const py::kwargs& keys) {
+  static const auto no_file = std::make_shared<const std::string>();
+  const Value value{table_of(keys, "shape"), no_file, 0};
+  const TableReader table(Item(value, "shape"));
+  table.refuse_unknown(shape_keys());
+  return {read_shape(table, "", false)};
+}
+
 /// Makes a value of each row, on all cores; one value, where every array of it has one row.
 template <typename Value, typename Make>
 void fill(ValueColumn<Value>& values, std::size_t rows, const Make& make) {
@@ -86,15 +97,23 @@ Vector3 RowsOfNumbers::vector(std::size_t row) const {
 QueryBodies::QueryBodies(const py::array_t<std::int8_t>& kinds, const Doubles& sizes,
                          const Doubles& position, const Doubles& orientation,
                          const Doubles& velocity, const Doubles& acceleration,
-                         const Doubles& angular_velocity, const py::list& motions)
+                         const Doubles& angular_velocity, const py::list& motions,
+                         const py::list& shapes)
     : kept_(motions) {
   const RowsOfNumbers size(sizes, "size"), p(position, "position"), q(orientation, "orientation"),
       v(velocity, "velocity"), a(acceleration, "acceleration"),
       w(angular_velocity, "angular_velocity");
   const auto kind_rows = static_cast<std::size_t>(kinds.size());
   const std::int8_t* kind = kinds.data();
-  fill(shapes_, rows_of(size.rows, kind_rows),
-       [&](std::size_t i) { return shape_of(kind[kind_rows == 1 ? 0 : i], size, i); });
+  if (shapes.empty()) {
+    fill(shapes_, rows_of(size.rows, kind_rows),
+         [&](std::size_t i) { return shape_of(kind[kind_rows == 1 ? 0 : i], size, i); });
+  } else {
+    shapes_.resize(shapes.size());
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      shapes_[i] = shapes[i].cast<const GivenShape&>().shape;
+    }
+  }
   fill(poses_, rows_of(p.rows, q.rows), [&](std::size_t i) { return pose_of(p, q, i); });
   fill(twists_, rows_of(v.rows, w.rows), [&](std::size_t i) {
     return Twist{v.vector(i), w.vector(i)};
@@ -103,7 +122,9 @@ QueryBodies::QueryBodies(const py::array_t<std::int8_t>& kinds, const Doubles& s
   const RowsOfNumbers* all[] = {&p, &v, &a, &w};
   std::transform(std::begin(all), std::end(all), greatest_,
                  [](const RowsOfNumbers* rows) { return greatest(*rows); });
-  has_half_spaces_ = std::find(kind, kind + kind_rows, 2) != kind + kind_rows;
+  for (std::size_t i = 0; i < shapes_.size(); ++i) {
+    has_half_spaces_ = has_half_spaces_ || std::holds_alternative<HalfSpace>(shapes_[i]);
+  }
   for (const py::handle& motion : motions) {
     motions_.push_back(motion.cast<const Motion*>());
   }
@@ -159,7 +180,19 @@ void refuse_two_half_spaces(const Shape& a, const Shape& b) {
 void bind_query_bodies(py::module_& module) {
   py::class_<QueryBodies>(module, "QueryBodies", "One side of N queries; see kairos.Bodies.")
       .def(py::init<const py::array_t<std::int8_t>&, const Doubles&, const Doubles&, const Doubles&,
-                    const Doubles&, const Doubles&, const Doubles&, const py::list&>());
+                    const Doubles&, const Doubles&, const Doubles&, const py::list&,
+                    const py::list&>());
+  py::class_<GivenShape>(module, "Shape", R"(A shape told by the keys of a body in a scene file.
+
+shape: "sphere", "box", "capsule", "cylinder", "cone", "hull", "mesh", "compound", "height-field" or
+"half-space"; then the keys of its size: radius (m), length, height, half_extents, points, file, unit,
+rounding, solid, part (a list of dicts), heights, spacing. Files are relative to the working folder. A
+hull is about its centroid; a mesh and a compound stay about the origin that they are told about. Shares
+its memory with all that are made of it. Raises InputError with the key that is wrong.)")
+      .def(py::init(&given_shape))
+      .def("__repr__", [](const GivenShape& given) {
+        return fmt::format("<kairos.Shape {}>", shape_name(given.shape));
+      });
 }
 
 }  // namespace kairos::python

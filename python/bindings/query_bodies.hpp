@@ -59,6 +59,11 @@ struct RowsOfNumbers {
   const char* name;
 };
 
+/// A shape that is told by the keys of a scene.
+struct GivenShape {
+  Shape shape;
+};
+
 /// One side of N queries: shapes, and how they move, as the detectors take them. Arrays are
 /// converted and checked once, as `kairos toi` checks a file; what is asked of them later is the
 /// library's own loop. 160 bytes a row where every column has rows of its own.
@@ -66,12 +71,13 @@ class QueryBodies {
  public:
   /// `kinds`: 0 box, 1 sphere, 2 half-space (rows,); `sizes`: half-extents, radius and two unused
   /// numbers, or normal (rows, 3); (rows, 3) and (rows, 4) for the rest. `motions`: instead of
-  /// position to angular velocity; empty: none. An array of one row stands for all. Throws
+  /// position to angular velocity; empty: none. `shapes`: a `kairos.Shape` for each row, or one for
+  /// all, instead of kinds and sizes; empty: none. An array of one row stands for all. Throws
   /// `InputError` that names the first bad row.
   QueryBodies(const pybind11::array_t<std::int8_t>& kinds, const Doubles& sizes,
               const Doubles& position, const Doubles& orientation, const Doubles& velocity,
               const Doubles& acceleration, const Doubles& angular_velocity,
-              const pybind11::list& motions);
+              const pybind11::list& motions, const pybind11::list& shapes);
 
   [[nodiscard]] const Shape& shape(std::size_t row) const { return shapes_[row]; }
   [[nodiscard]] Pose pose(std::size_t row) const {

@@ -12,7 +12,7 @@ SI units throughout; y is up; quaternions are unit, body to world, w first. Arra
 returns refer to its memory and are read-only; copy what shall change.
 """
 
-from ._kairos import Contact, ContactBody, Motion, versions
+from ._kairos import Contact, ContactBody, Motion, Shape, versions
 from .bodies import Bodies, Status, boxes, distance, half_spaces, overlap, spheres, toi
 from .errors import CallableError, InputError, ProgramError
 from .paths import Spline, first_contact
@@ -28,7 +28,7 @@ __version__ = dict(versions())["kairos"]
 
 __all__ = [
     "Bodies", "CallableError", "Contact", "ContactBody", "InputError", "Motion", "ProgramError",
-    "Recommendation", "Run", "Scene", "Spline", "States", "Status", "Sweep", "Table", "boxes", "distance",
+    "Recommendation", "Run", "Scene", "Shape", "Spline", "States", "Status", "Sweep", "Table", "boxes", "distance",
     "first_contact", "half_spaces", "merge", "options", "overlap", "plot", "plug_ins", "program",
     "recommend", "run", "shipped_scenes", "spheres", "sweep", "toi", "tradeoff", "versions",
     "why_refused",

@@ -7,7 +7,7 @@ import enum
 import numpy as np
 
 from . import _kairos
-from ._kairos import Motion
+from ._kairos import Motion, Shape
 
 
 class Status(enum.IntEnum):
@@ -35,7 +35,8 @@ def _rows(value, width, name):
 class Bodies:
     """Bodies of a kind, or of several, and how they move: one side of n questions.
 
-    shape: "box", "sphere", "half-space", or a list of n of these.
+    shape: "box", "sphere", "half-space", or a list of n of these, with `size`; or a `Shape` of any
+    kind (capsule to mesh), or a list of n, without.
     size (3,) or (n, 3): half-extents (m); radius and two numbers that do not count; outward normal.
     position (m), velocity (m/s), acceleration (m/s^2), angular_velocity (rad/s): (3,) or (n, 3);
     orientation (4,) or (n, 4): unit quaternion, body to world, w first. Bodies move on
@@ -48,10 +49,16 @@ class Bodies:
     number, the first of several.
     """
 
-    def __init__(self, shape, size, *, position=(0, 0, 0), orientation=(1, 0, 0, 0),
+    def __init__(self, shape, size=None, *, position=(0, 0, 0), orientation=(1, 0, 0, 0),
                  velocity=(0, 0, 0), acceleration=(0, 0, 0), angular_velocity=(0, 0, 0),
                  motion=None):
-        names = [shape] if isinstance(shape, str) else list(shape)
+        names = [shape] if isinstance(shape, (str, Shape)) else list(shape)
+        shapes = [one for one in names if isinstance(one, Shape)]
+        if shapes and (len(shapes) < len(names) or size is not None):
+            raise ValueError("shape: a Shape has its size; allowed: names and size, or Shapes alone")
+        if not shapes and size is None:
+            raise ValueError("size: is missing; needed: half-extents, radius or normal")
+        names, size = (["box"] * len(shapes), (0, 0, 0)) if shapes else (names, size)
         unknown = [name for name in names if name not in _KINDS]
         if unknown:
             raise ValueError(f"shape: '{unknown[0]}' is unknown; allowed: {', '.join(_KINDS)}")
@@ -66,7 +73,7 @@ class Bodies:
             raise ValueError(f"rows of different number: {sorted(counts)}; allowed: n, or 1")
         #: number of rows, 1 where all is given once
         self.count = counts.pop() if counts else 1
-        self._columns = _kairos.QueryBodies(kinds, *columns, motions)
+        self._columns = _kairos.QueryBodies(kinds, *columns, motions, shapes)
 
     def __len__(self):
         return self.count

@@ -102,7 +102,7 @@ TEST_CASE("many: what cannot be is refused with file, line, key and what is allo
   };
   has(complaint("radius = 0.2\n" + region), "s.toml:1: many.b.count: is missing");
   has(complaint("count = 0\nradius = 0.2\n" + region), "s.toml:5: many.b.count: ");
-  has(complaint("count = 9999999\nradius = 0.2\n" + region), "1 to 1000000");
+  has(complaint("count = 99999999\nradius = 0.2\n" + region), "1 to 10000000");
   has(complaint("count = 5\nradius = 0.2\n"), "many.b.region: is missing");
   has(complaint("count = 5\nradius = 0.2\nregion = {min = [0, 0, 0], max = [1, 0, 1]}\n"),
       "s.toml:7: many.b.region.max: is not above min");

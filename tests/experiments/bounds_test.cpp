@@ -124,6 +124,28 @@ TEST_CASE("bounds: more threads than memory has room for", "[bounds][toi]") {
   CHECK(sweep.exit_code == 0);
 }
 
+TEST_CASE("bounds: more bodies than memory has room for are refused, with the number that fits",
+          "[bounds]") {
+  const tests::Surroundings little{.memory = 400 * mebibyte};
+  const auto gas = [&](const std::string& balls) {
+    return kairos_program({"run", "gas", "--set", "many.ball.count=" + balls, "--set",
+                           "many.ball.radius=0.005", "--duration", "1e-4", "--frame", "1e-4"},
+                          little);
+  };
+  const Outcome refused = gas("10000000");
+  CAPTURE(refused.err);
+  CHECK(refused.exit_code == 2);
+  CHECK(contains(refused.err, "many.ball.count: 10000000 bodies take some 56"));
+  const std::string room = "there is room for ";
+  const std::size_t at = refused.err.find(room);
+  REQUIRE(at != std::string::npos);
+  const double fits = std::stod(refused.err.substr(at + room.size()));
+  CHECK(fits > 20'000);
+  const Outcome run = gas(std::to_string(static_cast<int>(fits)));
+  CAPTURE(fits, run.err);
+  CHECK(run.exit_code == 0);  // and so it does
+}
+
 TEST_CASE("bounds: a device without an end is no input", "[bounds]") {
   const TemporaryFolder folder;
   const std::string endless = folder.path("endless.csv");

@@ -184,3 +184,62 @@ def test_python_goes_on_while_questions_are_answered():
     thread.join()
     during = [t for t in turns if start <= t <= start + took]
     assert len(during) >= 3  # with the lock held: none between the first and the last bit of it
+
+
+CUBE = """OFF
+8 6 0
+-1 -1 -1
+1 -1 -1
+1 1 -1
+-1 1 -1
+-1 -1 1
+1 -1 1
+1 1 1
+-1 1 1
+4 0 3 2 1
+4 4 5 6 7
+4 0 1 5 4
+4 1 2 6 5
+4 2 3 7 6
+4 3 0 4 7
+"""
+
+
+def test_all_shapes_are_asked_by_the_keys_of_a_scene(tmp_path):
+    file = tmp_path / "cube.off"
+    file.write_text(CUBE)
+    half = {"shape": "box", "half_extents": (0.25, 0.5, 0.5)}
+    corners = [(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]
+    shapes = [kairos.Shape(shape="box", half_extents=(0.5, 0.5, 0.5)),
+              kairos.Shape(shape="hull", points=corners),
+              kairos.Shape(shape="mesh", file=file, unit=0.5),
+              kairos.Shape(shape="mesh", file=file, unit=0.5, solid=True),
+              kairos.Shape(shape="compound", part=[{**half, "position": (-0.25, 0, 0)},
+                                                   {**half, "position": (0.25, 0, 0)}]),
+              kairos.Shape(shape="sphere", radius=0.5),
+              kairos.Shape(shape="capsule", radius=0.5, length=1),
+              kairos.Shape(shape="cylinder", radius=0.5, length=1)]
+    # Each reaches 0.5 m along x: at 1 m/s the gap of 1 m to a cube closes after 1 s.
+    a = kairos.Bodies(shapes, velocity=(1, 0, 0))
+    b = boxes((0.5, 0.5, 0.5), position=(2, 0, 0))
+    answers = toi(a, b, 3.0)
+    assert (answers["status"] == Status.impact).all()
+    assert (np.abs(answers["t_lo"] - 1) < 1e-8).all() and (answers["t_lo"] <= 1).all()
+    assert np.allclose(kairos.distance(a, b)["gap"], 1, rtol=0, atol=1e-14)
+    assert not kairos.overlap(a, b).any()
+    assert kairos.overlap(a, boxes((0.5, 0.5, 0.5), position=(0.9, 0, 0))).all()
+    one = kairos.Bodies(shapes[4], velocity=(1, 0, 0))  # stands for all
+    assert (toi(one, kairos.Bodies(shapes, position=(2, 0, 0)), 3.0)["status"] == Status.impact).all()
+
+
+def test_what_is_no_shape_is_refused_by_its_key(tmp_path):
+    with pytest.raises(kairos.InputError, match="radius"):
+        kairos.Shape(shape="capsule", length=1)
+    with pytest.raises(kairos.InputError, match="colour: unknown key"):
+        kairos.Shape(shape="sphere", radius=1, colour="red")
+    with pytest.raises(kairos.InputError, match="nowhere.off"):
+        kairos.Shape(shape="mesh", file=tmp_path / "nowhere.off")
+    with pytest.raises(ValueError, match="names and size, or Shapes alone"):
+        kairos.Bodies([kairos.Shape(shape="sphere", radius=1), "box"])
+    with pytest.raises(ValueError, match="size: is missing"):
+        kairos.Bodies("box")

@@ -1,3 +1,4 @@
+#include "ccd/cells.hpp"
 #include "core/random.hpp"
 #include "core/reading/scene_reader.hpp"
 #include "core/scene.hpp"
@@ -200,6 +201,34 @@ TEST_CASE("one digest over broad phases, orders of bodies and resumed runs", "[b
       CHECK(resumed.ledger.energy() == result.ledger.energy());
     }
   }
+}
+
+TEST_CASE("one digest over five sizes of cells", "[broad-phase]") {
+  const Model model = model_of(room(false), "cells");
+  EventDigest usual;
+  REQUIRE(simulate(model, {}, usual).status == RunStatus::completed);
+  std::vector<std::int64_t> costs;
+  for (const ccd::CellSize size :
+       {ccd::CellSize{0.5, 1.0}, {1.0, 1.0}, {1.7, 1.0}, {4.0, 1.0}, {1.0, 6.0}}) {
+    CAPTURE(size.width, size.margin);
+    Method method{find_integrator("auto", {}),
+                  find_detector("certified"),
+                  find_impact_law("newton"),
+                  find_broad_phase("dynamic-tree"),
+                  swept_bounds(),
+                  ccd::cells_of(size)};
+    EventDigest digest;
+    SchemeOptions options;
+    options.frames = model.scene().frames;
+    options.duration = model.scene().duration;
+    const RunResult result = find_scheme("event-driven")->run(model, method, options, digest);
+    REQUIRE(result.status == RunStatus::completed);
+    CHECK(digest.text() == usual.text());
+    costs.push_back(result.cost.toi_queries);
+  }
+  // They are five: what they cost is not the same.
+  std::sort(costs.begin(), costs.end());
+  CHECK(std::adjacent_find(costs.begin(), costs.end()) == costs.end());
 }
 
 // `clear_times` may pass over a pair only before it meets.

@@ -171,7 +171,8 @@ bool EventAccumulation::rests(BodyIndex a, BodyIndex b, double approach, double 
                               Instant t) const {
   double pressing = 0.0;
   for (const BodyIndex i : {a, b}) {
-    const Motion& motion = motions_.of(i);
+    const auto moving = motions_.moving(i);
+    const Motion& motion = moving.motion();
     const double s = std::min(t - motion.start, motion.duration);
     const double w = motion.twist(s).angular.norm();
     pressing += motion.acceleration(s).norm();
@@ -218,7 +219,8 @@ EventAccumulation::Finding EventAccumulation::collapse(BodyIndex a, BodyIndex b,
         run_.detector.overlap(shape_p, motions_.at(p, t).pose, shape_q, motions_.at(q, t).pose);
     const auto side = [&](BodyIndex i) {
       const bool struck = (i == a || i == b) && run_.model.is_free(i);
-      const Motion& motion = motions_.of(i);
+      const auto moving = motions_.moving(i);
+      const Motion& motion = moving.motion();
       return Side(run_.model, i, struck ? motions_.now(i) : motions_.at(i, t), motion,
                   std::min(t - motion.start, motion.duration), o.point);
     };
@@ -282,7 +284,7 @@ std::string EventAccumulation::squeeze(BodyIndex i, Instant t) const {
     velocity = motions_.at(j, t).twist.linear - velocity;
     normal = o.normal;
     gap += std::max(o.gap, 0.0);
-    left = std::min(left, motions_.of(j).end() - t);
+    left = std::min(left, motions_.end_of(j) - t);
   }
   // The second one's velocity against the first's, along its normal, which points to body i.
   const double closing = normal.dot(velocity);

@@ -28,7 +28,7 @@ void Agenda::push(Instant t, Due due, BodyIndex a, BodyIndex b, double patience,
   if (heap_.size() >= crowded_) {
     sweep_out();
   }
-  heap_.push_back({t, due, rank_[a], rank_[b], version_[a], version_[b], patience, decided, image});
+  heap_.push_back({t, patience, rank_[a], rank_[b], version_[a], version_[b], image, due, decided});
   std::push_heap(heap_.begin(), heap_.end(), later);
 }
 

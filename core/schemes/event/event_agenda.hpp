@@ -96,14 +96,14 @@ class Agenda {
   static constexpr std::size_t least_crowded = 1024;
   struct Entry {
     Instant time;
-    Due due = Due::impact;
+    double patience = 0.0;
     std::uint32_t a = 0;  ///< ranks
     std::uint32_t b = 0;
     std::uint32_t version_a = 0;  ///< of the motions for which it was predicted
     std::uint32_t version_b = 0;
-    double patience = 0.0;
-    bool decided = true;
     Image image{};
+    Due due = Due::impact;
+    bool decided = true;
 
     void persist(Archive& archive);
     /// As that of an entry of the calendar.

@@ -3,6 +3,7 @@
 #include "core/joint_system.hpp"
 #include "core/schemes/event/event_motions.hpp"
 
+#include <span>
 #include <utility>
 
 namespace kairos {
@@ -29,7 +30,7 @@ void EventMotions::book(Flow& flow, Instant t) {
   }
   book_rubs(first, t);
   // At its end a segment is where the stepper left it, which its motion tells up to roundoff.
-  const bool whole = !(of(first).end() - t > 0.0) && !bodies_[first].support;
+  const bool whole = !(end_of(first) - t > 0.0) && !bodies_[first].support;
   for (std::size_t k = 0; k < flow.states.size(); ++k) {
     const BodyIndex i = flow.island.bodies[k];
     now_[i] = whole ? flow.states[k] : at(i, t);
@@ -47,15 +48,16 @@ void EventMotions::book(Flow& flow, Instant t) {
   if (flow.island.forces.empty()) {
     run_.account.leg(leg);
   } else {
-    for (std::size_t k = 0; k < flow.motions.size(); ++k) {
-      flow.motions[k] = of(flow.island.bodies[k]);
+    const std::span motions(motions_.data(), flow.states.size());
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+      motions[k] = of(flow.island.bodies[k]);
     }
     if (flow.island.joints != nullptr) {
       leg.contact_work = whole ? run_.account.projected(flow.projection) : 0.0;
-      leg.riding_work = run_.account.joint_work(flow.island, flow.motions, flow.booked, duration) +
+      leg.riding_work = run_.account.joint_work(flow.island, motions, flow.booked, duration) +
                         (whole ? flow.projection.driven : 0.0);
     }
-    run_.account.leg(leg, flow.motions, flow.booked, duration);
+    run_.account.leg(leg, motions, flow.booked, duration);
   }
   for (const BodyIndex i : flow.island.bodies) {
     booked_[i] = now_[i];
@@ -65,8 +67,9 @@ void EventMotions::book(Flow& flow, Instant t) {
 
 /// What contact forces did to a body that turns, J; books what of their work is truncation.
 double EventMotions::book_turn(BodyIndex i, Instant from, Instant to) {
-  const MovingBody& body = bodies_[i];
-  const Vector3 done = body.worked(to - body.motion.start) - body.worked(from - body.motion.start);
+  const Polynomial<3>& worked = bodies_[i].worked.front();
+  const Instant start = start_of(i);
+  const Vector3 done = worked(to - start) - worked(from - start);
   run_.ledger.add(EnergyLine::truncation, done.y());
   return done.x();
 }
@@ -133,7 +136,7 @@ double EventMotions::riding_work(const Flow& flow, Instant t) {
 /// Roundoff of the current segment since the ledger last looked, J.
 double EventMotions::new_roundoff(Flow& flow, Instant t) {
   flow.replayed.resize(flow.launched.size());
-  if (!flow.stepper->replay(flow.island, t - of(flow.island.bodies.front()).start, flow.launched,
+  if (!flow.stepper->replay(flow.island, t - start_of(flow.island.bodies.front()), flow.launched,
                             flow.replayed)) {
     return 0.0;
   }

@@ -138,7 +138,7 @@ bool EventContacts::meet_elsewhere(BodyIndex a, BodyIndex b, Instant t) {
 bool EventContacts::could_be_supported(BodyIndex a, BodyIndex b, Instant t) const {
   for (const auto& [ball, surface] : {std::pair{a, b}, std::pair{b, a}}) {
     if (run_.model.is_free(ball) && !run_.model.is_free(surface) &&
-        std::holds_alternative<Sphere>(run_.model.shape(ball)) && motions_.of(surface).start <= t &&
+        std::holds_alternative<Sphere>(run_.model.shape(ball)) && motions_.start_of(surface) <= t &&
         run_.model.friction(ball, surface) == 0.0) {
       return true;
     }
@@ -218,7 +218,8 @@ bool EventContacts::lands(BodyIndex a, BodyIndex b, const Contact& contact, Inst
     if (run_.model.friction(ball, surface) > 0.0) {
       continue;  // a mode of its own
     }
-    const Motion& under = motions_.of(surface);
+    const auto moving = motions_.moving(surface);
+    const Motion& under = moving.motion();
     const double s = std::min(t - under.start, under.duration);
     const Vector3 normal = ball == b ? contact.normal : Vector3(-contact.normal);
     const auto support =
@@ -313,7 +314,8 @@ void EventContacts::relaunch(BodyIndex a, BodyIndex b, Instant t) {
 
 /// At which the ball leaves the surface, m/s.
 double EventContacts::leaving_speed(BodyIndex ball, const Support& support, Instant t) const {
-  const Motion& under = motions_.of(support.surface);
+  const auto moving = motions_.moving(support.surface);
+  const Motion& under = moving.motion();
   const double s = std::min(t - under.start, under.duration);
   return support.normal.dot(motions_.now(ball).twist.linear - under.twist(s).linear);
 }
@@ -321,7 +323,8 @@ double EventContacts::leaving_speed(BodyIndex ball, const Support& support, Inst
 /// The ball takes the velocity of the surface along its normal.
 void EventContacts::follow(BodyIndex ball, const Support& support, Instant t) {
   const double away = leaving_speed(ball, support, t);
-  const Motion& under = motions_.of(support.surface);
+  const auto moving = motions_.moving(support.surface);
+  const Motion& under = moving.motion();
   const double ground =
       support.normal.dot(under.twist(std::min(t - under.start, under.duration)).linear);
   const double m = run_.model.inertia(ball).mass;

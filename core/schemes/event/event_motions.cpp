@@ -6,10 +6,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 namespace kairos {
 inline namespace core {
+
+namespace {
+
+/// So few bodies keep their motions as they are, which is faster, in 25 MB.
+constexpr std::size_t few = 16'384;
+
+}  // namespace
 
 EventMotions::EventMotions(EventRun& run, const Method& method)
     : run_(run),
@@ -20,11 +28,17 @@ EventMotions::EventMotions(EventRun& run, const Method& method)
       now_(run.model.initial_state()),
       booked_(now_),
       field_forces_(run.model.size(), Vector3::Zero()) {
+  whole_.resize(run.model.size() <= few ? run.model.size() : 0);
+  for (BallFlight& flight : flights_) {
+    flight.radius = std::numeric_limits<double>::infinity();
+  }
   for (std::size_t k = 0; k < run.model.islands().size(); ++k) {
     Flow flow{.island = run.model.islands()[k], .stepper = method.stepper(run.model, k)};
     flow.exact = flow.stepper->info().order == 0;
     flow.states.resize(flow.island.bodies.size());
-    flow.motions.resize(flow.island.bodies.size());
+    if (flow.states.size() > motions_.size()) {
+      motions_.resize(flow.states.size());
+    }
     flows_.push_back(std::move(flow));
   }
   run_.account.open(run_.time, now_);
@@ -34,7 +48,8 @@ void EventMotions::begin() {
   for (const BodyIndex i : run_.agenda.by_name()) {
     switch (run_.model.mobility(i)) {
       case Mobility::fixed:
-        bodies_[i].motion = Motion::at_rest(run_.time, now_[i].pose);
+        keep_motion(i, Motion::at_rest(run_.time, now_[i].pose));
+        set_flight(i, of(i));
         break;
       case Mobility::driven:
         drive(i, run_.time);
@@ -57,9 +72,13 @@ void EventMotions::begin() {
 }
 
 BodyState EventMotions::at(BodyIndex i, Instant t) const {
-  const Motion& motion = bodies_[i].motion;
-  const double s = std::min(t - motion.start, motion.duration);
-  return {motion.pose(s), motion.twist(s)};
+  if (!whole_.empty()) {
+    const Motion& motion = whole_[i];
+    const double s = std::min(t - motion.start, motion.duration);
+    return {motion.pose(s), motion.twist(s)};
+  }
+  const StoredMotion& motion = bodies_[i].motion;
+  return motion.at(std::min(t - motion.start(), motion.duration()));
 }
 
 void EventMotions::bring_others(BodyIndex i, Instant t) {
@@ -78,6 +97,7 @@ void EventMotions::launch(BodyIndex i, Instant t) {
   for (const BodyIndex k : flow.island.bodies) {
     bodies_[k].rubs.clear();
     bodies_[k].turns = false;
+    bodies_[k].worked.clear();
   }
   set_forces(flow);
   if (flow.island.joints != nullptr) {
@@ -126,7 +146,7 @@ void EventMotions::turn(BodyIndex i, Instant t, const Turn& turn) {
   hold(i, t, Twist{});
   MovingBody& body = bodies_[i];
   body.turns = true;
-  body.worked = turn.worked;
+  body.worked.assign(1, turn.worked);
   Flow& flow = flow_of(i);
   flow.states[0] = turn.end;
   set_motion(i, turn.motion);
@@ -138,6 +158,7 @@ void EventMotions::hold(BodyIndex i, Instant t, const Twist& acceleration) {
   set_support(i, std::nullopt);
   bodies_[i].rubs.clear();
   bodies_[i].turns = false;
+  bodies_[i].worked.clear();
   set_forces(flow);
   flow.island.constant_force[0] = run_.model.inertia(i).mass * acceleration.linear;
   flow.states[0] = booked_[i] = now_[i];
@@ -198,9 +219,14 @@ void EventMotions::next_segment(Flow& flow, Instant t) {
   }
   flow.projection = step.projection;
   flow.exact = flow.stepper->info().order == 0;  // a closed form may have given up
-  flow.stepper->dense_output(flow.motions);
-  for (std::size_t k = 0; k < flow.motions.size(); ++k) {
-    set_motion(flow.island.bodies[k], flow.motions[k]);
+  const std::span motions(motions_.data(), flow.states.size());
+  for (Motion& motion : motions) {  // what not all steppers tell, and another has told
+    motion.rotation_rate.setZero();
+    motion.error_radius = 0.0;
+  }
+  flow.stepper->dense_output(motions);
+  for (std::size_t k = 0; k < motions.size(); ++k) {
+    set_motion(flow.island.bodies[k], motions[k]);
   }
   hold(flow, t);
   const BodyIndex first = flow.island.bodies.front();
@@ -213,12 +239,20 @@ void EventMotions::next_segment(Flow& flow, Instant t) {
 void EventMotions::drive(BodyIndex i, Instant t) {
   set_motion(i, run_.model.body(i).drive->motion(t, run_.epoch));
   bring(i, t);
-  run_.agenda.push(of(i).end(), Due::segment_end, i, i);
+  run_.agenda.push(end_of(i), Due::segment_end, i, i);
+}
+
+void EventMotions::keep_motion(BodyIndex i, const Motion& motion) {
+  if (whole_.empty()) {
+    bodies_[i].motion = motion;
+  } else {
+    whole_[i] = motion;
+  }
 }
 
 void EventMotions::set_motion(BodyIndex i, const Motion& motion) {
-  bodies_[i].motion = motion;
-  set_flight(i);
+  keep_motion(i, motion);
+  set_flight(i, motion);
   run_.agenda.renew(i);
   if (run_.wants_motions) {
     tell_motion(i, motion);
@@ -236,8 +270,10 @@ void EventMotions::tell_motion(BodyIndex i, const Motion& motion) {
 
 void EventMotions::go_on_as(BodyIndex i, const Image& n) {
   const Vector3 shift = run_.model.scene().periodic->shift(n);
-  bodies_[i].motion.position[0] += shift;
-  set_flight(i);
+  Motion motion = of(i);
+  motion.position[0] += shift;
+  keep_motion(i, motion);
+  set_flight(i, motion);
   now_[i].pose.position += shift;
   booked_[i].pose.position += shift;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -255,20 +291,23 @@ void EventMotions::set_support(BodyIndex i, const std::optional<Support>& suppor
   bodies_[i].support = support;
 }
 
-void EventMotions::set_flight(BodyIndex i) {
-  const MovingBody& body = bodies_[i];
-  const Motion& motion = body.motion;
-  const auto* ball = std::get_if<Sphere>(&run_.model.shape(i));
-  flies_[i] = static_cast<char>(ball != nullptr && run_.model.is_free(i) && !body.support &&
-                                motion.position.degree() <= 2 && std::isinf(motion.duration));
-  if (flies_[i] == 0) {
+void EventMotions::set_flight(BodyIndex i, const Motion& motion) {
+  const Shape& shape = run_.model.shape(i);
+  const bool parabola = motion.position.degree() <= 2;
+  flies_[i] = static_cast<char>(parabola && std::holds_alternative<Sphere>(shape) &&
+                                run_.model.is_free(i) && !bodies_[i].support &&
+                                std::isinf(motion.duration));
+  if (!parabola) {
+    flights_[i].radius = std::numeric_limits<double>::infinity();
     return;
   }
   const auto coefficient = [&](int k) {
     return k <= motion.position.degree() ? Vector3(motion.position[k]) : Vector3(Vector3::Zero());
   };
+  // What is no ball may touch by what a detector leaves and its bounding ball, rounded, does not.
+  const double more = std::holds_alternative<Sphere>(shape) ? 1.0 : 1.0 + 0x1p-20;
   flights_[i] = {coefficient(0), coefficient(1), 2.0 * coefficient(2), motion.start,
-                 ball->radius + motion.error_radius};
+                 more * bounding_radius(shape) + motion.error_radius};
 }
 
 /// A supported ball rides on its surface until its face ends or draws away.
@@ -278,16 +317,17 @@ void EventMotions::hold(Flow& flow, Instant t) {
   if (!support) {
     return;
   }
-  Motion& motion = bodies_[i].motion;
+  Motion motion = of(i);
   const Vector3& n = support->normal;
   const BodyIndex surface = support->surface;
   const double mass = flow.island.inertia[0].mass;
-  const Motion under = of(surface).shifted(t - of(surface).start);
+  const Motion under = of(surface).shifted(t - start_of(surface));
   const double left = std::min({run_.epoch_end - t, under.duration, motion.duration});
   double until = face_exit_time(run_.model.shape(surface), under, motion, n, left);
   if (run_.model.mobility(surface) == Mobility::driven) {
     until = std::min(until, lift_off_time(under, n, mass, net_force(i)));
     motion = ride(motion, under, n);
+    keep_motion(i, motion);
     if (run_.wants_motions) {
       tell_motion(i, motion);
     }
@@ -311,7 +351,7 @@ void EventMotions::carry(BodyIndex i, BodyIndex hand, const BodyState& state, In
   booked_[i] = state;
   flow.booked = t;
   flow.carried = true;
-  Motion motion = of(hand).shifted(t - of(hand).start);
+  Motion motion = of(hand).shifted(t - start_of(hand));
   motion.rotation = RotationKind::fixed;
   motion.quaternion = Motion::at_rest(t, state.pose).quaternion;
   motion.angular_velocity = {};
@@ -349,7 +389,8 @@ Vector3 EventMotions::acting_force(BodyIndex i, Instant t, const BodyState& stat
 
 double EventMotions::pressing(BodyIndex ball, const Support& support, Instant t, bool held) const {
   const auto surface_acceleration = [&](BodyIndex surface) {
-    const Motion& under = of(surface);
+    const auto riding = moving(surface);
+    const Motion& under = riding.motion();
     return under.acceleration(std::min(t - under.start, under.duration));
   };
   Vector3 own = acting_force(ball, t, now_[ball]) / run_.model.inertia(ball).mass;
@@ -411,10 +452,6 @@ void EventMotions::Rub::persist(Archive& archive) {
           from_a, from_b, booked);
 }
 
-void EventMotions::MovingBody::persist(Archive& archive) {
-  archive(motion, support, fields, rubs, turns, worked);
-}
-
 void EventMotions::Flow::persist(Archive& archive) {
   archive(island.constant_force, exact, carried, held, states, launched, roundoff, booked,
           projection.velocity, projection.driven, projection.position);
@@ -427,11 +464,20 @@ void EventMotions::persist(Archive& archive) {
       flow.stepper->start(flow.island, Instant{}, flow.states);
     }
   }
-  archive(now_, booked_, field_forces_, bodies_);
+  archive(now_, booked_, field_forces_);
+  for (BodyIndex i = 0; i < bodies_.size(); ++i) {
+    Motion motion = of(i);
+    MovingBody& body = bodies_[i];
+    archive(motion, body.support, body.fields, body.rubs, body.turns, body.worked);
+    archive.require(body.turns ? body.worked.size() == 1 : body.worked.empty());
+    if (archive.reading()) {
+      keep_motion(i, motion);
+    }
+  }
   std::fill(riders_.begin(), riders_.end(), 0U);
   if (archive.reading()) {
     for (BodyIndex i = 0; i < bodies_.size(); ++i) {
-      set_flight(i);
+      set_flight(i, of(i));
     }
   }
   for (const MovingBody& body : bodies_) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/schemes/event/event_run.hpp"
+#include "core/schemes/event/stored_motion.hpp"
 #include "core/schemes/shared/support.hpp"
 
 #include <cstdint>
@@ -23,12 +24,39 @@ class EventMotions {
   /// First motions of all bodies, from the model's initial state.
   void begin();
 
-  [[nodiscard]] const Motion& of(BodyIndex i) const { return bodies_[i].motion; }
-  [[nodiscard]] MovingShape moving(BodyIndex i) const {
-    return {run_.model.shape(i), bodies_[i].motion};
+  [[nodiscard]] Motion of(BodyIndex i) const {
+    return whole_.empty() ? bodies_[i].motion.motion() : whole_[i];
+  }
+  [[nodiscard]] Instant start_of(BodyIndex i) const {
+    return whole_.empty() ? bodies_[i].motion.start() : whole_[i].start;
+  }
+  [[nodiscard]] Instant end_of(BodyIndex i) const {
+    return whole_.empty() ? bodies_[i].motion.end() : whole_[i].end();
+  }
+  /// A shape with the motion that it has, for as long as this lives.
+  class Moving {
+   public:
+    Moving(const Shape& shape, const Motion& whole) : shape_(shape), motion_(&whole) {}
+    Moving(const Shape& shape, const StoredMotion& stored)
+        : shape_(shape), made_(stored.motion()), motion_(&*made_) {}
+    Moving(const Moving&) = delete;
+    Moving& operator=(const Moving&) = delete;
+    operator MovingShape() const { return {shape_, *motion_}; }
+    [[nodiscard]] const Motion& motion() const { return *motion_; }
+
+   private:
+    const Shape& shape_;
+    std::optional<Motion> made_;
+    const Motion* motion_;
+  };
+  [[nodiscard]] Moving moving(BodyIndex i) const {
+    return whole_.empty() ? Moving(run_.model.shape(i), bodies_[i].motion)
+                          : Moving(run_.model.shape(i), whole_[i]);
   }
   /// Whether i is a ball on a parabola until it is launched again, and held by nothing.
   [[nodiscard]] bool flies(BodyIndex i) const { return flies_[i] != 0; }
+  /// Where the ball is that bounds body i; its radius is infinite where that is on no parabola, or
+  /// the body has no end.
   [[nodiscard]] const BallFlight& flight(BodyIndex i) const { return flights_[i]; }
   [[nodiscard]] BodyState at(BodyIndex i, Instant t) const;
   /// States of the event at hand, by body: an event brings here what it looks at, changes it, and
@@ -142,24 +170,21 @@ class EventMotions {
 
  private:
   struct MovingBody {
-    Motion motion;
+    StoredMotion motion;  ///< of no meaning where there are few bodies
     std::optional<Support> support;
     std::vector<BodyIndex> fields;
     std::vector<Rub> rubs;
-    bool turns = false;      ///< while it touches
-    Polynomial<3> worked{};  ///< see `Turn`
-
-    void persist(Archive& archive);
+    bool turns = false;                   ///< while it touches
+    std::vector<Polynomial<3>> worked{};  ///< see `Turn`; none while nothing turns
   };
   /// An island, its stepper, and how far the ledger has followed it.
   struct Flow {
     Island island;
     std::unique_ptr<Stepper> stepper;
     bool exact = false;
-    bool carried = false;             ///< a hand holds its body
-    bool held = false;                ///< contact forces hold it: no stepper moves it
-    std::vector<BodyState> states{};  ///< at the end of the segment
-    std::vector<Motion> motions{};
+    bool carried = false;                     ///< a hand holds its body
+    bool held = false;                        ///< contact forces hold it: no stepper moves it
+    std::vector<BodyState> states{};          ///< at the end of the segment
     std::unique_ptr<SupportForce> support{};  ///< while it slides under state-dependent forces
     std::vector<BodyState> launched{};        ///< where the segment began: for replays
     std::vector<ReplayedStep> replayed{};
@@ -173,8 +198,9 @@ class EventMotions {
   void next_segment(Flow& flow, Instant t);
   void drive(BodyIndex i, Instant t);
   void set_motion(BodyIndex i, const Motion& motion);
+  void keep_motion(BodyIndex i, const Motion& motion);
   void tell_motion(BodyIndex i, const Motion& motion);
-  void set_flight(BodyIndex i);
+  void set_flight(BodyIndex i, const Motion& motion);
   void hold(Flow& flow, Instant t);
   void set_forces(Flow& flow);
   [[nodiscard]] Vector3 field_forces_at(BodyIndex i) const;
@@ -192,12 +218,14 @@ class EventMotions {
   EventRun& run_;
   std::vector<MovingBody> bodies_;
   std::vector<std::uint32_t> riders_;  ///< by surface
-  std::vector<BallFlight> flights_;    ///< of those that fly
+  std::vector<BallFlight> flights_;
   std::vector<char> flies_;
   std::vector<Flow> flows_;
   State now_;
   State booked_;                       ///< where the ledger is
   std::vector<Vector3> field_forces_;  ///< N, as of the last launch
+  std::vector<Motion> whole_;          ///< of few bodies, where room is no matter; else empty
+  std::vector<Motion> motions_;        ///< scratch: of the bodies of one island
 };
 
 }  // namespace core

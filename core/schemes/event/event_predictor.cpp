@@ -109,14 +109,7 @@ void EventPredictor::meet_balls(BodyIndex i, Instant known) {
   flights_.clear();
   for (const Neighbour& j : balls_) {
     flights_.push_back(motions_.flight(j.body));
-    if (!is_zero(j.image)) {
-      BallFlight& flight = flights_.back();
-      const Vector3 shift = run_.model.scene().periodic->shift(j.image);
-      flight.position += shift;
-      // The sum is rounded, and a query may round the other way.
-      constexpr double roundings = 8.0 * std::numeric_limits<double>::epsilon();
-      flight.radius += roundings * (flight.position.lpNorm<1>() + shift.lpNorm<1>());
-    }
+    move_to(j.image, flights_.back());
   }
   clear_.resize(balls_.size());
   const BallFlight& own = motions_.flight(i);
@@ -137,6 +130,36 @@ void EventPredictor::meet_balls(BodyIndex i, Instant known) {
     *next = near_.back();
     near_.pop_back();
   }
+}
+
+/// As an image of it.
+void EventPredictor::move_to(const Image& n, BallFlight& flight) const {
+  const auto& box = run_.model.scene().periodic;
+  if (!box || is_zero(n)) {
+    return;
+  }
+  const Vector3 shift = box->shift(n);
+  flight.position += shift;
+  // The sum is rounded, and a query may round the other way.
+  constexpr double roundings = 8.0 * std::numeric_limits<double>::epsilon();
+  flight.radius += roundings * (flight.position.lpNorm<1>() + shift.lpNorm<1>());
+}
+
+/// Whether the balls that bound the two are clear of each other for as long as is asked: what
+/// tumbles is asked about anew with each segment of its rotation, and is far from most.
+bool EventPredictor::stay_clear(const Question& of) const {
+  if (!neighbourhood_ || (motions_.flies(of.a) && motions_.flies(of.b))) {
+    return false;  // few bodies, or balls that have been asked about
+  }
+  const BallFlight& a = motions_.flight(of.a);
+  BallFlight b = motions_.flight(of.b);
+  if (!std::isfinite(a.radius + b.radius)) {
+    return false;
+  }
+  move_to(of.image, b);
+  double clear = 0.0;
+  run_.detector.clear_times(a, {&b, 1}, run_.options.toi_tolerance, {&clear, 1});
+  return std::max(a.start, b.start) + clear > of.from + of.duration;
 }
 
 /// Whether i needs to know only of its earliest meeting, if that is one of these.
@@ -197,8 +220,7 @@ void EventPredictor::ask(BodyIndex i, const Neighbour& other, Instant from, Inst
   if (motions_.is_supported_by(a, b) || motions_.is_supported_by(b, a) || graph_.joins(a, b)) {
     return;
   }
-  const double duration =
-      std::min({motions_.of(a).end(), motions_.of(b).end(), run_.epoch_end}) - from;
+  const double duration = std::min({motions_.end_of(a), motions_.end_of(b), run_.epoch_end}) - from;
   if (!(duration > 0.0)) {
     return;
   }
@@ -208,7 +230,7 @@ void EventPredictor::ask(BodyIndex i, const Neighbour& other, Instant from, Inst
     predict_parting(question, Due::clear_of_hand);
   } else if (motions_.is_in_field(a, b) || motions_.is_in_field(b, a)) {
     predict_parting(question, Due::field_left);
-  } else {
+  } else if (!stay_clear(question)) {
     predict_meeting(question);
   }
 }
@@ -239,7 +261,7 @@ TimeOfImpact EventPredictor::counted(const TimeOfImpact& toi) {
 /// How one of the two moves as the other sees it.
 Motion EventPredictor::motion_of(BodyIndex i, const Question& of) const {
   Motion motion = motions_.of(i);
-  if (!is_zero(of.image) && i == mover(of.a, of.b)) {
+  if (is_imaged(of) && i == mover(of.a, of.b)) {
     motion.position[0] += run_.model.scene().periodic->shift(i == of.b ? of.image : -of.image);
   }
   return motion;
@@ -247,7 +269,7 @@ Motion EventPredictor::motion_of(BodyIndex i, const Question& of) const {
 
 TimeOfImpact EventPredictor::time_of_impact(const Question& of, double duration) {
   const Window window{of.from, duration};
-  if (is_zero(of.image)) {
+  if (!is_imaged(of)) {
     return counted(run_.detector.time_of_impact(motions_.moving(of.a), motions_.moving(of.b),
                                                 window, run_.options.toi_tolerance));
   }
@@ -261,7 +283,7 @@ TimeOfImpact EventPredictor::time_of_impact(const Question& of, double duration)
 /// `touching_gap` where one of the two is told as an image.
 double EventPredictor::allowed_gap(const Question& of) const {
   const double gap = touching_gap(of.a, of.b);
-  if (is_zero(of.image)) {
+  if (!is_imaged(of)) {
     return gap;
   }
   return gap + 704.0 * std::numeric_limits<double>::epsilon() *
@@ -274,7 +296,8 @@ double EventPredictor::touching_gap(BodyIndex a, BodyIndex b) const {
   double errors = 0.0;
   double extent = std::numeric_limits<double>::infinity();
   for (const BodyIndex i : {a, b}) {
-    const Motion& motion = motions_.of(i);
+    const auto moving = motions_.moving(i);
+    const Motion& motion = moving.motion();
     const double s = std::min(motion.duration, run_.epoch);
     double reached = 0.0;
     for (int k = motion.position.degree(); k >= 0; --k) {
@@ -401,6 +424,11 @@ void EventPredictor::predict_parting(const Question& question, Due due) {
 }
 
 TimeOfImpact EventPredictor::time_of_separation(const Question& of) {
+  if (!is_imaged(of)) {
+    return counted(run_.detector.time_of_separation(motions_.moving(of.a), motions_.moving(of.b),
+                                                    {of.from, of.duration},
+                                                    run_.options.toi_tolerance));
+  }
   const Motion a = motion_of(of.a, of);
   const Motion b = motion_of(of.b, of);
   return counted(

@@ -81,7 +81,7 @@ class EventPredictor {
 
   /// Until when a motion that body i has now may be asked about.
   [[nodiscard]] Instant last_of(BodyIndex i) const {
-    return std::min(motions_.of(i).end(), run_.epoch_end);
+    return std::min(motions_.end_of(i), run_.epoch_end);
   }
   void enter(BodyIndex i, Instant t);
   void predict_near(BodyIndex i, const Neighbour& j, Instant known = before_all);
@@ -90,6 +90,12 @@ class EventPredictor {
   [[nodiscard]] bool keeps_meeting(BodyIndex i, BodyIndex with) const;
   void ask(BodyIndex i, const Neighbour& j, Instant from, Instant known);
   void push(const Question& of, double after, Due due, double patience = 0.0, bool decided = true);
+  /// Whether b is seen as an image of it.
+  [[nodiscard]] bool is_imaged(const Question& of) const {
+    return run_.model.scene().periodic && !is_zero(of.image);
+  }
+  void move_to(const Image& n, BallFlight& flight) const;
+  [[nodiscard]] bool stay_clear(const Question& of) const;
   void predict_meeting(const Question& question);
   [[nodiscard]] TimeOfImpact time_of_impact(const Question& of, double duration);
   [[nodiscard]] Motion motion_of(BodyIndex i, const Question& of) const;

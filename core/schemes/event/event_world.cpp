@@ -108,7 +108,7 @@ void EventWorld::next_epoch(Instant t) {
     }
   }
   for (const BodyIndex i : contacts_.modes().moving()) {
-    if (motions_.of(i).start < t) {  // its group has not been looked at
+    if (motions_.start_of(i) < t) {  // its group has not been looked at
       contacts_.settle_anew(i, t);
     }
   }

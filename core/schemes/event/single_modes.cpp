@@ -29,7 +29,7 @@ bool EventModes::settle_driven(const Gathered& found, Instant t, const Adopt& ad
     why_not_ = "'" + run_.model.body(body).name + "' turns, or lies on no face";
     return false;
   }
-  const Motion& whole = motions_.of(surface);
+  const Motion whole = motions_.of(surface);
   const Motion under = whole.shifted(std::min(t - whole.start, whole.duration));
   DrivenMode driven =
       driven_mode({.body = found.states[k],
