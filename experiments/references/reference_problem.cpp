@@ -168,8 +168,8 @@ void add_stacks(std::vector<ReferenceProblem>& all) {
   all.push_back({"four boxes over an edge, 0.999 of 25/24", "height of the top one after 5 s", "m",
                  0.7, overhang, "newton", position(4, Vector3::UnitY())});
   const std::string ladder =
-      head(0.5, 0.0) + plane("floor") + plane("wall", "[1, 0, 0]") +
-      box("ladder", "[0.5, 0.025, 0.25]", "[0.271650635094611, 0.445512701892219, 0]",
+      head(0.6, 0.0) + plane("floor") + plane("wall", "[1, 0, 0]") +
+      box("ladder", "[1, 0.05, 0.5]", "[0.543301270189222, 0.891025403784438, 0]",
           "axis_angle = [0, 0, 1, -1.0471975511965976]");
   all.push_back({"ladder slides down a wall", "leaves the wall after", "s", 0.450086985205, ladder,
                  "newton", when(EventKind::contact_ends)});
