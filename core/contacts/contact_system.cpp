@@ -2,6 +2,8 @@
 
 #include <Eigen/QR>
 
+#include <cmath>
+
 namespace kairos {
 inline namespace core {
 
@@ -82,6 +84,24 @@ void ContactSystem::project(std::vector<Twist>& v) const {
   decomposition.compute(coupling());
   for (int k = 0; k < 2; ++k) {
     push(-decomposition.solve(rates(v)), v);
+  }
+}
+
+void ContactSystem::undo_where_faster(const std::vector<Twist>& before,
+                                      std::vector<Twist>& v) const {
+  const auto same = [](const Twist& x, const Twist& y) {
+    return x.linear == y.linear && x.angular == y.angular;
+  };
+  for (bool again = true; again;) {
+    again = false;
+    for (const ContactRow& row : rows) {
+      if (std::abs(rate(row, v)) > std::abs(rate(row, before)) &&
+          !(same(v[row.a], before[row.a]) && same(v[row.b], before[row.b]))) {
+        v[row.a] = before[row.a];
+        v[row.b] = before[row.b];
+        again = true;
+      }
+    }
   }
 }
 
