@@ -53,6 +53,9 @@ void EventPredictor::cross(BodyIndex i, Instant t) {
 }
 
 void EventPredictor::renew(BodyIndex i, Instant t) {
+  if (!neighbourhood_) {
+    return;  // as above: nobody is filed
+  }
   neighbours_.clear();
   neighbourhood_->near(i, neighbours_);
   survey(i, t);
