@@ -89,16 +89,19 @@ void ContactSystem::project(std::vector<Twist>& v) const {
 
 void ContactSystem::undo_where_faster(const std::vector<Twist>& before,
                                       std::vector<Twist>& v) const {
-  const auto same = [](const Twist& x, const Twist& y) {
-    return x.linear == y.linear && x.angular == y.angular;
+  constexpr double along = 1e-9;  // of a speed: less off a contact is along it
+  const auto off = [](const ContactRow& row, const std::vector<Twist>& u) {
+    return std::abs(row.direction.dot(u[row.b].linear - u[row.a].linear));
   };
   for (bool again = true; again;) {
     again = false;
     for (const ContactRow& row : rows) {
-      if (std::abs(rate(row, v)) > std::abs(rate(row, before)) &&
-          !(same(v[row.a], before[row.a]) && same(v[row.b], before[row.b]))) {
-        v[row.a] = before[row.a];
-        v[row.b] = before[row.b];
+      const bool same =
+          v[row.a].linear == before[row.a].linear && v[row.b].linear == before[row.b].linear;
+      const double speed = v[row.a].linear.norm() + v[row.b].linear.norm();
+      if (!same && off(row, v) > along * speed && off(row, v) > off(row, before)) {
+        v[row.a].linear = before[row.a].linear;
+        v[row.b].linear = before[row.b].linear;
         again = true;
       }
     }
