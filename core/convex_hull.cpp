@@ -16,7 +16,6 @@ namespace {
 using Index = std::uint32_t;
 using Edge = std::pair<Index, Index>;
 
-
 bool on_one_line(const Vector3& a, const Vector3& b, const Vector3& c) {
   // Collinear exactly if no point off the line spans a volume with them.
   for (int k = 0; k < 3; ++k) {

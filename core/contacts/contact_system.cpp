@@ -2,6 +2,8 @@
 
 #include <Eigen/QR>
 
+#include <cmath>
+
 namespace kairos {
 inline namespace core {
 
@@ -82,6 +84,27 @@ void ContactSystem::project(std::vector<Twist>& v) const {
   decomposition.compute(coupling());
   for (int k = 0; k < 2; ++k) {
     push(-decomposition.solve(rates(v)), v);
+  }
+}
+
+void ContactSystem::undo_where_faster(const std::vector<Twist>& before,
+                                      std::vector<Twist>& v) const {
+  constexpr double along = 1e-9;  // of a speed: less off a contact is along it
+  const auto off = [](const ContactRow& row, const std::vector<Twist>& u) {
+    return std::abs(row.direction.dot(u[row.b].linear - u[row.a].linear));
+  };
+  for (bool again = true; again;) {
+    again = false;
+    for (const ContactRow& row : rows) {
+      const bool same =
+          v[row.a].linear == before[row.a].linear && v[row.b].linear == before[row.b].linear;
+      const double speed = v[row.a].linear.norm() + v[row.b].linear.norm();
+      if (!same && off(row, v) > along * speed && off(row, v) > off(row, before)) {
+        v[row.a].linear = before[row.a].linear;
+        v[row.b].linear = before[row.b].linear;
+        again = true;
+      }
+    }
   }
 }
 

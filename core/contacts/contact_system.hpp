@@ -48,6 +48,9 @@ struct ContactSystem {
   /// The nearest v for which J v = 0, nearest as the kinetic energy measures it; twice, so that
   /// what is left is roundoff of what is left.
   void project(std::vector<Twist>& v) const;
+  /// Gives bodies back the linear velocities `before` a change that leads them along a row, faster
+  /// than before and by more than a small part of how they move.
+  void undo_where_faster(const std::vector<Twist>& before, std::vector<Twist>& v) const;
 };
 
 }  // namespace core

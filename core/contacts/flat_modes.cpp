@@ -206,8 +206,11 @@ class Attempt {
     return patches == 1 && group_.loads[i].angular.norm() <= 64.0 * epsilon * w.squaredNorm();
   }
 
-  /// Roundoff of what was projected to nothing is nothing.
+  /// Roundoff of what was projected to nothing is nothing; a small part of a slow way along a
+  /// contact is none: without it, the way would lead into the contact or out of it.
   void clean() {
+    const std::vector<Twist> velocities = mode_.velocities;
+    const std::vector<Twist> accelerations = mode_.accelerations;
     for (std::size_t i = 0; i < group_.bodies.size(); ++i) {
       if (!moves(group_.bodies[i])) {
         continue;
@@ -220,6 +223,9 @@ class Attempt {
         a = std::abs(a) <= 0.01 * solve_roundoff * load_ ? 0.0 : a;
       }
     }
+    const ContactSystem held = rows_of(mode_.kept);
+    held.undo_where_faster(velocities, mode_.velocities);
+    held.undo_where_faster(accelerations, mode_.accelerations);
   }
 
   const ContactGroup& group_;

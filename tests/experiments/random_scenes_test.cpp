@@ -302,6 +302,25 @@ TEST_CASE("random scenes that once broke a promise", "[random]") {
   }
 }
 
+TEST_CASE("random scenes of bodies in touch that once broke a promise", "[random]") {
+  struct Case {
+    std::uint64_t index;
+    Fate fate;
+    const char* what;
+  };
+  const Case cases[] = {
+      {16443, Fate::stopped, "a ball in contact hovered beside the other"},
+      {46413, Fate::right, "a part of a slow way along an incline was taken for roundoff"},
+      {81822, Fate::right, "a part of a slow way along an incline was taken for roundoff"},
+      {12184, Fate::stopped, "rounding of what others handed on was taken for a broken law"},
+  };
+  for (const Case& c : cases) {
+    const Trial trial = try_scene(touching_scene(21, c.index));
+    CAPTURE(c.index, c.what, trial.reason);
+    CHECK(trial.fate == c.fate);
+  }
+}
+
 TEST_CASE("a survey that was killed goes on, and one that wants more scenes", "[random][sweep]") {
   const tests::TemporaryFolder folder;
   const std::string journal = folder.path("blocks");

@@ -43,6 +43,9 @@ void EventPredictor::predict(BodyIndex i, Instant t, BodyIndex except) {
 }
 
 void EventPredictor::cross(BodyIndex i, Instant t) {
+  if (!neighbourhood_) {
+    return;  // nobody crosses; a forged checkpoint may say so
+  }
   neighbours_.clear();
   run_.agenda.cross(i, neighbourhood_->cross(i, motions_.moving(i), t, last_of(i), neighbours_));
   survey(i, t);
@@ -50,6 +53,9 @@ void EventPredictor::cross(BodyIndex i, Instant t) {
 }
 
 void EventPredictor::renew(BodyIndex i, Instant t) {
+  if (!neighbourhood_) {
+    return;  // as above: nobody is filed
+  }
   neighbours_.clear();
   neighbourhood_->near(i, neighbours_);
   survey(i, t);
