@@ -40,7 +40,7 @@ void EventMotions::book(Flow& flow, Instant t) {
   // What the motion of a top is off its closed form is truncation: polynomials are fitted to it.
   const bool turns = bodies_[first].turns;
   const bool exact =
-      (flow.held && !turns) || (flow.exact && !run_.model.tumbles(run_.model.island_of(first)));
+      !turns && (flow.held || (flow.exact && !run_.model.tumbles(run_.model.island_of(first))));
   Leg leg{flow.island, booked_, now_, field_forces_, exact, roundoff, riding_work(flow, t)};
   if (turns) {
     leg.contact_work = book_turn(first, flow.booked, t);

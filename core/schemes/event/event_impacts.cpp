@@ -301,10 +301,13 @@ bool EventContacts::strike_group(const BodyPair& pair, double approach, Instant 
     } else if (run_.model.mobility(i) == Mobility::driven) {
       motions_.bring(i, t);
     }
-    before.push_back(motions_.now(i));
+    BodyState& now = motions_.now(i);
+    before.push_back(now);
     if (run_.model.is_free(i)) {
-      motions_.now(i).twist = velocities[k];
-      run_.account.struck(i, before.back(), motions_.now(i));
+      before.back().twist = impact.velocities[k];
+      run_.ledger.add(EnergyLine::projection, run_.account.gained(i, now, before.back()));
+      now.twist = velocities[k];
+      run_.account.struck(i, before.back(), now);
     }
   }
   // p (u- + u+) / 2 of each row is what it did to the energy, but for the work of what is driven.
