@@ -2,6 +2,7 @@
 #include "core/mesh_body.hpp"
 #include "core/reading/mesh_file.hpp"
 #include "experiments/bench/bench.hpp"
+#include "experiments/processor_time.hpp"
 #include "experiments/rally/rally_run.hpp"
 #include "simulation/registry.hpp"
 #include "simulation/scene_library.hpp"
@@ -11,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ctime>
 #include <filesystem>
 #include <utility>
 
@@ -124,7 +124,7 @@ void bench_bats(int rallies) {
   for (const Bat& bat : bats) {
     BatWatch watch;
     std::int64_t stopped = 0;
-    std::clock_t spent = 0;
+    double spent = 0.0;  // s, of the processor
     for (int r = 0; r < rallies; ++r) {
       const RallyRecording rally = make_rally({.seed = 1999 + static_cast<std::uint64_t>(r)});
       Scene scene = rally_scene(rally, {.name = "event-driven"});
@@ -132,12 +132,12 @@ void bench_bats(int rallies) {
         take_bat(scene, rally, mesh, bat.bounds);
       }
       const Model model(std::move(scene));
-      const std::clock_t start = std::clock();
+      const double start = processor_seconds();
       stopped += simulate(model, {}, watch).status == RunStatus::completed ? 0 : 1;
-      spent += std::clock() - start;
+      spent += processor_seconds() - start;
     }
     fmt::print("{:<18}{:>8}{:>10}{:>10}{:>10}{:>12.2f}\n", bat.name, watch.hits, watch.inside,
-               watch.passed, stopped, 1e3 * static_cast<double>(spent) / CLOCKS_PER_SEC / rallies);
+               watch.passed, stopped, 1e3 * spent / rallies);
   }
 }
 
