@@ -79,6 +79,24 @@ TEST_CASE("figures: each has a name of its own, found however it is written", "[
   CHECK(find_thesis_figure("") == nullptr);
 }
 
+TEST_CASE("3.2: the larger its bounds, the more often a bat hits where it is not", "[figures]") {
+  const Table bats = table_of("3.2", "bats");  // the scene's box, then its box, its hull, itself
+  REQUIRE(bats.rows.size() == 4);
+  for (std::size_t row = 0; row < 4; ++row) {
+    CAPTURE(row);
+    CHECK(number(bats, row, "completed") == 20);
+    CHECK(number(bats, row, "hits") > 400);
+    CHECK(number(bats, row, "passed") == 0);
+    CHECK(number(bats, row, "inside") == 0);
+  }
+  for (std::size_t row = 1; row < 3; ++row) {
+    CHECK(number(bats, row, "volume") > number(bats, row + 1, "volume"));
+    CHECK(number(bats, row, "early") > number(bats, row + 1, "early"));
+  }
+  CHECK(number(bats, 3, "early") == 0);
+  CHECK(number(bats, 3, "most_gap") < 1e-9);  // it touches what players see
+}
+
 TEST_CASE("figures: texts quote values, and only values that exist", "[figures]") {
   FigureData data("", Size::quick);
   data.value("depth", 0.0123456, "m", "");
