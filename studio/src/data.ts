@@ -185,7 +185,7 @@ export function readRun(text: RunText, buffer: ArrayBuffer): Run {
     frames,
     energy: Object.keys(text.arrays)
       .filter((name) => name.startsWith("energy."))
-      .map((name) => ({ name: name.slice("energy.".length).replaceAll("-", " "), values: f64(name) })),
+      .map((name) => ({ name: name.slice("energy.".length).replace(/[-_]/g, " "), values: f64(name) })),
     events: {
       time: f64("event.time"),
       kind: u8("event.kind"),
