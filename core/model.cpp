@@ -4,6 +4,7 @@
 #include "core/island_force.hpp"
 #include "core/model_tally.hpp"
 #include "core/scene_check.hpp"
+#include "core/spin_energy.hpp"
 
 #include <fmt/format.h>
 
@@ -383,9 +384,7 @@ double Model::kinetic_energy(BodyIndex i, const BodyState& state) const {
   if (!inertia.rotates) {
     return linear;
   }
-  const Vector3 w_B =
-      inertia.principal_axes(state.pose.orientation).conjugate() * state.twist.angular;
-  return linear + 0.5 * w_B.dot(inertia.principal.cwiseProduct(w_B));
+  return linear + spin_energy(inertia, state);
 }
 
 }  // namespace core

@@ -21,6 +21,15 @@ async function bundle(entries, options = {}) {
   return { script: text(".js"), style: text(".css") };
 }
 
+/** The editor is a script of its own: a page parses and starts a script without a pause, and for both that takes too long. */
+const editorAside = {
+  name: "editor-aside",
+  setup(made) {
+    made.onResolve({ filter: /^\.\/editor$/ }, () => ({ path: "editor", namespace: "aside" }));
+    made.onLoad({ filter: /./, namespace: "aside" }, () => ({ contents: "module.exports = globalThis.kairosEditor" }));
+  },
+};
+
 // A script or style ends at the first thing that looks like its end tag.
 const asScript = (text) => text.replace(/<\/(script)/gi, "<\\/$1").replace(/<!--/g, "<\\!--");
 const asStyle = (text) => text.replace(/<\/(style)/gi, "<\\/$1");
@@ -38,7 +47,8 @@ async function viewer(out) {
 }
 
 async function studio(out, engine, scenes) {
-  const { script, style } = await bundle(["lab/main.ts", "studio.css"]);
+  const { script, style } = await bundle(["lab/main.ts", "studio.css"], { plugins: [editorAside] });
+  const editor = await bundle(["lab/editor.ts"], { globalName: "kairosEditor" });
   const worker = await bundle(["lab/worker.ts"], {
     alias: { "kairos-engine": resolve(engine, "engine.js") }, external: ["fs", "path", "crypto"],
   });
@@ -53,7 +63,8 @@ async function studio(out, engine, scenes) {
   ].join("");
   const page = (await readFile(source("studio.html"), "utf8"))
     .replace("<!--viewer-->", () => main).replace("<!--studio-data-->", () => data)
-    .replace("/*style*/", () => asStyle(style)).replace("/*script*/", () => asScript(script));
+    .replace("/*style*/", () => asStyle(style)).replace("/*editor*/", () => asScript(editor.script))
+    .replace("/*script*/", () => asScript(script));
   await write(out, page);
 }
 

@@ -19,7 +19,17 @@ namespace {
 constexpr std::size_t most_parts = 1'000;
 constexpr std::size_t most_heights = 1'000;
 
-CompoundPart read_part(const Item& item, const std::string& directory) {
+/// What moves freely turns about its centre of mass, which that of a rounded hull is a part of.
+void check_rounding(const TableReader& table, const Shape& shape, bool moves_freely) {
+  const auto* hull = std::get_if<Hull>(&shape);
+  if (moves_freely && hull != nullptr && hull->rounding > 0.0) {
+    table.fail("rounding",
+               "is not 0, and the body moves freely: the centre of mass of a rounded hull is not "
+               "known; allowed: 0 here, and any for parts of walls and driven bodies");
+  }
+}
+
+CompoundPart read_part(const Item& item, const std::string& directory, bool moves_freely) {
   const TableReader table(item);
   table.refuse_unknown(scene_keys_of("body.part"));
   CompoundPart part{read_shape(table, directory, false), {}};
@@ -28,6 +38,7 @@ CompoundPart read_part(const Item& item, const std::string& directory) {
                                     "cone or a hull",
                                     shape_name(part.shape)));
   }
+  check_rounding(table, part.shape, moves_freely);
   if (const auto position = table.find("position")) {
     part.pose.position = position->vector(limits::position);
   }
@@ -45,7 +56,8 @@ Shape read_compound(const TableReader& table, const std::string& directory, bool
   }
   std::vector<CompoundPart> parts;
   for (std::size_t i = 0; i < array.size(); ++i) {
-    parts.push_back(read_part(Item(array[i], fmt::format("{}[{}]", item.path(), i)), directory));
+    parts.push_back(
+        read_part(Item(array[i], fmt::format("{}[{}]", item.path(), i)), directory, moves_freely));
   }
   return Compound{moves_freely ? compound_body(std::move(parts)).body
                                : compound_in_place(std::move(parts))};

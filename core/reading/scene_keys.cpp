@@ -77,6 +77,7 @@ constexpr SceneKey keys[] = {
     {"body.part", "points"},
     {"body.part", "file"},
     {"body.part", "unit"},
+    {"body.part", "rounding"},
     {"body.part", "position"},
     {"body.part", "orientation"},
     {"body.part", "axis_angle"},

@@ -2,6 +2,8 @@
 
 #ifdef KAIROS_PEER_BULLET
 
+#include "experiments/bench/bullet_types.hpp"
+
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btContinuousConvexCollision.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>
@@ -11,17 +13,6 @@
 
 namespace kairos::experiments {
 namespace {
-
-btVector3 vector(const Vector3& v) {
-  return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
-}
-
-btTransform transform(const Pose& pose) {
-  const Quaternion& q = pose.orientation;
-  return btTransform(btQuaternion(static_cast<btScalar>(q.x()), static_cast<btScalar>(q.y()),
-                                  static_cast<btScalar>(q.z()), static_cast<btScalar>(q.w())),
-                     vector(pose.position));
-}
 
 Contest impacts(const std::vector<BoxPair>& pairs, double /*tolerance*/) {
   return [&pairs](std::size_t first, std::size_t last, std::vector<double>& answers) {

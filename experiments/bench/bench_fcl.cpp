@@ -2,11 +2,11 @@
 
 #ifdef KAIROS_PEER_FCL
 
+#include "experiments/bench/fcl_motion.hpp"
+
 #include <fcl/geometry/shape/box.h>
 #include <fcl/math/bv/OBB.h>
-#include <fcl/math/motion/interp_motion.h>
 #include <fcl/narrowphase/continuous_collision.h>
-#include <fcl/narrowphase/continuous_collision_request.h>
 
 #include <limits>
 #include <utility>
@@ -33,32 +33,23 @@ Contest overlaps(const std::vector<BoxPair>& pairs) {
   };
 }
 
-/// FCL's conservative advancement between the poses at both ends (its default accuracy is 1e-4).
 Contest impacts(const std::vector<BoxPair>& pairs, double tolerance) {
-  fcl::ContinuousCollisionRequestd request;
-  request.ccd_motion_type = fcl::CCDM_LINEAR;
-  request.ccd_solver_type = fcl::CCDC_CONSERVATIVE_ADVANCEMENT;
-  request.gjk_solver_type = fcl::GST_LIBCCD;
-  request.toc_err = tolerance;
+  const fcl::ContinuousCollisionRequestd request = advancement_request(tolerance);
   return [&pairs, request](std::size_t first, std::size_t last, std::vector<double>& answers) {
     const auto box = [](const Box& shape) {
       fcl::Boxd full(fcl::Vector3d(2.0 * shape.half_extents));
       full.computeLocalAABB();  // its bounds of motion read it
       return full;
     };
-    // Given two transforms alone, FCL 0.7 does not initialise the point that it turns about.
-    const auto motion = [](const Pose& start, const Pose& end) {
-      return fcl::InterpMotion<double>(start.orientation.toRotationMatrix(), start.position,
-                                       end.orientation.toRotationMatrix(), end.position,
-                                       fcl::Vector3d::Zero());
-    };
     for (std::size_t i = first; i < last; ++i) {
       const BoxPair& pair = pairs[i];
       const fcl::Boxd a = box(pair.a);
       const fcl::Boxd b = box(pair.b);
       fcl::ContinuousCollisionResultd result;
-      const fcl::InterpMotion<double> motion_a = motion(pair.start_a, pair.end_a);
-      const fcl::InterpMotion<double> motion_b = motion(pair.start_b, pair.end_b);
+      const fcl::InterpMotion<double> motion_a =
+          motion_between(transform(pair.start_a), transform(pair.end_a));
+      const fcl::InterpMotion<double> motion_b =
+          motion_between(transform(pair.start_b), transform(pair.end_b));
       fcl::continuousCollide(&a, &motion_a, &b, &motion_b, request, result);
       answers[i] = result.is_collide ? result.time_of_contact : never;
     }

@@ -1,6 +1,7 @@
 #include "core/reading/scene_reader.hpp"
 #include "experiments/bench/bench.hpp"
 #include "experiments/bench/gas_peers.hpp"
+#include "experiments/processor_time.hpp"
 #include "simulation/scene_library.hpp"
 #include "simulation/simulate.hpp"
 
@@ -90,13 +91,6 @@ struct GasRun {
   double least_gap = 0.0;                                    ///< at an impact, m
   double energy_error = 0.0;                                 ///< a part of all
 };
-
-double processor_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_utime.tv_sec) +
-         1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
-}
 
 /// Once through, nobody looking in between; the first launch and predictions are part of it.
 void run_once(const Model& model, double duration, GasRun& run) {

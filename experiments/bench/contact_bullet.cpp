@@ -2,6 +2,8 @@
 
 #ifdef KAIROS_PEER_BULLET
 
+#include "experiments/bench/bullet_types.hpp"
+
 #include <btBulletDynamicsCommon.h>
 
 #include <memory>
@@ -9,11 +11,7 @@
 namespace kairos::experiments {
 namespace {
 
-btVector3 vector(const Vector3& v) {
-  return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
-}
-
-Vector3 vector(const btVector3& v) {
+Vector3 ours(const btVector3& v) {
   return {static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())};
 }
 
@@ -62,8 +60,8 @@ std::vector<BodyState> run(const ContactTask& task) {
   for (const auto& body : bodies) {
     const btTransform& at = body->getWorldTransform();
     const btQuaternion q = at.getRotation();
-    states.push_back({{vector(at.getOrigin()), Quaternion(q.w(), q.x(), q.y(), q.z())},
-                      {vector(body->getLinearVelocity()), vector(body->getAngularVelocity())}});
+    states.push_back({{ours(at.getOrigin()), Quaternion(q.w(), q.x(), q.y(), q.z())},
+                      {ours(body->getLinearVelocity()), ours(body->getAngularVelocity())}});
   }
   for (const auto& joint : joints) {
     world.removeConstraint(joint.get());

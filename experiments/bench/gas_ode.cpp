@@ -2,8 +2,9 @@
 
 #ifdef KAIROS_PEER_ODE
 
+#include "experiments/processor_time.hpp"
+
 #include <ode/ode.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
@@ -34,13 +35,6 @@ void on_near(void* data, dGeomID a, dGeomID b) {
   contact.surface.bounce_vel = 0.0;
   dJointAttach(dJointCreateContact(room.world, room.contacts, &contact), dGeomGetBody(a),
                dGeomGetBody(b));
-}
-
-double processor_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_utime.tv_sec) +
-         1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
 }
 
 double kinetic(const std::vector<dBodyID>& bodies) {

@@ -2,6 +2,8 @@
 
 #ifdef KAIROS_PEER_BULLET
 
+#include "experiments/bench/bullet_types.hpp"
+
 #include <BulletCollision/CollisionShapes/btConvexHullShape.h>
 #include <BulletCollision/CollisionShapes/btCylinderShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btContinuousConvexCollision.h>
@@ -17,17 +19,6 @@
 
 namespace kairos::experiments {
 namespace {
-
-btVector3 vector(const Vector3& v) {
-  return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
-}
-
-btTransform transform(const Pose& pose) {
-  const Quaternion& q = pose.orientation;
-  return btTransform(btQuaternion(static_cast<btScalar>(q.x()), static_cast<btScalar>(q.y()),
-                                  static_cast<btScalar>(q.z()), static_cast<btScalar>(q.w())),
-                     vector(pose.position));
-}
 
 /// Its cylinders are about y, as ours are.
 std::shared_ptr<btConvexShape> convex(const Shape& shape) {

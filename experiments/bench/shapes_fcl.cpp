@@ -2,11 +2,12 @@
 
 #ifdef KAIROS_PEER_FCL
 
+#include "experiments/bench/fcl_motion.hpp"
+
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/convex.h>
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/math/bv/OBBRSS.h>
-#include <fcl/math/motion/interp_motion.h>
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/continuous_collision.h>
 #include <fcl/narrowphase/distance.h>
@@ -47,10 +48,8 @@ Geometry geometry(const Shape& shape) {
   return made;
 }
 
-fcl::Transform3d transform(const Shape& shape, const Pose& pose) {
-  fcl::Transform3d placed = fcl::Transform3d::Identity();
-  placed.linear() = pose.orientation.toRotationMatrix();
-  placed.translation() = pose.position;
+fcl::Transform3d place(const Shape& shape, const Pose& pose) {
+  fcl::Transform3d placed = transform(pose);
   if (std::holds_alternative<Cylinder>(shape)) {
     placed.rotate(Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), Vector3::UnitY()));
   }
@@ -73,34 +72,24 @@ Contest distances(const std::vector<ShapePair>& pairs) {
     const fcl::DistanceRequestd request(true);
     for (std::size_t i = first; i < last; ++i) {
       fcl::DistanceResultd result;
-      const double d = fcl::distance(shapes.a[i].get(), transform(pairs[i].a, pairs[i].start_a),
-                                     shapes.b[i].get(), transform(pairs[i].b, pairs[i].start_b),
-                                     request, result);
+      const double d =
+          fcl::distance(shapes.a[i].get(), place(pairs[i].a, pairs[i].start_a), shapes.b[i].get(),
+                        place(pairs[i].b, pairs[i].start_b), request, result);
       answers[i] = std::max(0.0, d);
     }
   };
 }
 
-/// Conservative advancement between the poses at both ends.
 Contest impacts(const std::vector<ShapePair>& pairs, double tolerance) {
-  fcl::ContinuousCollisionRequestd request;
-  request.ccd_motion_type = fcl::CCDM_LINEAR;
-  request.ccd_solver_type = fcl::CCDC_CONSERVATIVE_ADVANCEMENT;
-  request.gjk_solver_type = fcl::GST_LIBCCD;
-  request.toc_err = tolerance;
+  const fcl::ContinuousCollisionRequestd request = advancement_request(tolerance);
   return [&pairs, request, shapes = Geometries(pairs)](std::size_t first, std::size_t last,
                                                        std::vector<double>& answers) {
-    // Given two transforms alone, FCL 0.7 does not initialise the point that it turns about.
-    const auto motion = [](const Shape& shape, const Pose& start, const Pose& end) {
-      const fcl::Transform3d from = transform(shape, start);
-      const fcl::Transform3d to = transform(shape, end);
-      return fcl::InterpMotion<double>(from.linear(), from.translation(), to.linear(),
-                                       to.translation(), fcl::Vector3d::Zero());
-    };
     for (std::size_t i = first; i < last; ++i) {
       const ShapePair& pair = pairs[i];
-      const fcl::InterpMotion<double> motion_a = motion(pair.a, pair.start_a, pair.end_a);
-      const fcl::InterpMotion<double> motion_b = motion(pair.b, pair.start_b, pair.end_b);
+      const fcl::InterpMotion<double> motion_a =
+          motion_between(place(pair.a, pair.start_a), place(pair.a, pair.end_a));
+      const fcl::InterpMotion<double> motion_b =
+          motion_between(place(pair.b, pair.start_b), place(pair.b, pair.end_b));
       fcl::ContinuousCollisionResultd result;
       fcl::continuousCollide(shapes.a[i].get(), &motion_a, shapes.b[i].get(), &motion_b, request,
                              result);
@@ -122,13 +111,6 @@ std::shared_ptr<const Model> model(const MeshData& mesh) {
   made->addSubModel(vertices, triangles);
   made->endModel();
   return made;
-}
-
-fcl::Transform3d transform(const Pose& pose) {
-  fcl::Transform3d placed = fcl::Transform3d::Identity();
-  placed.linear() = pose.orientation.toRotationMatrix();
-  placed.translation() = pose.position;
-  return placed;
 }
 
 /// `most`: contacts to look for.

@@ -129,12 +129,6 @@ std::string errata_html(const ReportEntry& entry) {
     const std::string id = text(i, "id");
     if (i == 0 || text(i - 1, "id") != id) {
       out += i == 0 ? "<tbody>\n" : "</tbody><tbody>\n";
-      std::string test = html(text(i, "test"));
-      const std::string file = "test-" + id + ".txt";
-      std::error_code error;
-      if (std::filesystem::exists(std::filesystem::path(entry.folder) / file, error)) {
-        test = fmt::format("<a href=\"{}/{}\">{}</a>", html(entry.name), html(file), test);
-      }
       const std::string section = text(i, "section");
       out += fmt::format(
           "<tr class=\"statement\"><th>{}</th><td class=\"text\" colspan=\"7\"><b>Thesis{}:</b> "
@@ -142,7 +136,7 @@ std::string errata_html(const ReportEntry& entry) {
           "<b>Reading:</b> {}. <span class=\"test\">Test: {}</span></td></tr>\n",
           html(id), section == "—" ? "" : " " + html(section),
           text(i, "thesis") == "—" ? "silent" : html(text(i, "thesis")), html(text(i, "reading")),
-          test);
+          html(text(i, "test")));
     }
     out += fmt::format(
         "<tr><td></td><td class=\"text\">{}</td><td>{}</td><td data-label=\"predicted\">{}</td>"

@@ -14,6 +14,7 @@ ThesisFigure aabbs_overlapping();
 ThesisFigure aabbs_on_one_axis();
 ThesisFigure oriented_box();
 ThesisFigure ball_in_box();
+ThesisFigure bat_in_bounds();
 ThesisFigure separating_axis();
 ThesisFigure flow_of_events();
 ThesisFigure get_and_give();
@@ -40,6 +41,7 @@ std::span<const ThesisFigure> thesis_figures() {
       thesis::aabbs_on_one_axis(),
       thesis::oriented_box(),
       thesis::ball_in_box(),
+      thesis::bat_in_bounds(),
       thesis::separating_axis(),
       thesis::flow_of_events(),
       thesis::get_and_give(),

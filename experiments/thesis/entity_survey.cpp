@@ -2,37 +2,47 @@
 
 #include "core/scene.hpp"
 
-#include <cxxabi.h>
 #include <fmt/format.h>
 
-#include <cstdlib>
+#include <algorithm>
+#include <array>
 #include <memory>
-#include <typeinfo>
 
 namespace kairos::experiments::thesis {
 namespace {
 
-/// The last part of a class's full name.
-std::string class_name(const std::type_info& type) {
-  int status = 0;
-  const std::unique_ptr<char, void (*)(void*)> full(
-      abi::__cxa_demangle(type.name(), nullptr, nullptr, &status), std::free);
-  const std::string name = status == 0 ? full.get() : type.name();
-  return name.substr(name.rfind(':') + 1);
+/// A class of the catalogue, and the one that it inherits. A test holds the list against the types
+/// that the compiler knows.
+struct EntityClass {
+  std::string_view kind;
+  std::string_view name;
+  std::string_view parent;
+};
+constexpr std::array<EntityClass, 8> classes{{
+    {"anti-gravity-pad", "AntiGravityPad", "Entity"},
+    {"ball", "Ball", "Entity"},
+    {"balloon", "Balloon", "Ball"},
+    {"bat", "Bat", "Entity"},
+    {"body", "RigidBody", "Ball"},
+    {"conveyor", "Conveyor", "Entity"},
+    {"hand", "Hand", "Entity"},
+    {"wall", "Wall", "Entity"},
+}};
+
+const EntityClass& class_of(std::string_view kind) {
+  return *std::find_if(classes.begin(), classes.end(),
+                       [kind](const EntityClass& c) { return c.kind == kind; });
 }
 
-/// Base classes, nearest first, from the run-time type information that the C++ ABI of GCC and
-/// Clang defines (Itanium C++ ABI, 2.9.5): what the compiler knows, not what a list says.
-std::vector<std::string> base_classes(const std::type_info& type) {
-  std::vector<std::string> names;
-  for (const std::type_info* at = &type;;) {
-    const auto* derived = dynamic_cast<const abi::__si_class_type_info*>(at);
-    if (derived == nullptr) {
-      return names;
-    }
-    at = derived->__base_type;
-    names.push_back(class_name(*at));
+/// Base classes, nearest first.
+std::vector<std::string> base_classes(const EntityClass& of) {
+  std::vector<std::string> names{std::string(of.parent)};
+  const auto named = [&](const EntityClass& c) { return c.name == names.back(); };
+  for (auto at = std::find_if(classes.begin(), classes.end(), named); at != classes.end();
+       at = std::find_if(classes.begin(), classes.end(), named)) {
+    names.emplace_back(at->parent);
   }
+  return names;
 }
 
 std::string_view name_of(PhysicsType type) {
@@ -114,10 +124,10 @@ std::vector<SurveyedEntity> survey_entities() {
     self.entity = entity;
     self.shape = Sphere{0.1};
     self.mass = type.mobility == Mobility::fixed ? -1.0 : 1.0;
-    const Entity& asked = *entity;
+    const EntityClass& of = class_of(type.kind);
     survey.push_back({.kind = std::string(type.kind),
-                      .class_name = class_name(typeid(asked)),
-                      .parents = base_classes(typeid(asked)),
+                      .class_name = std::string(of.name),
+                      .parents = base_classes(of),
                       .physics_type = std::string(name_of(entity->physics_type())),
                       .mobility = std::string(name_of(entity->mobility())),
                       .stationary = entity->stationary(),
@@ -125,7 +135,7 @@ std::vector<SurveyedEntity> survey_entities() {
                       .rotates = entity->rotates(),
                       .source = std::string(type.source),
                       .keys = type.keys,
-                      .answers = ask(asked, self)});
+                      .answers = ask(*entity, self)});
   }
   return survey;
 }

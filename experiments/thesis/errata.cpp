@@ -2,7 +2,6 @@
 
 #include "experiments/output/atomic_file.hpp"
 #include "experiments/parallel_for.hpp"
-#include "experiments/thesis/test_excerpts.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
 
 #include <fmt/format.h>
@@ -200,16 +199,6 @@ void measure(FigureData& data) {
   tell_claims(data);
 }
 
-/// Beside the table, the text of each test that it names.
-std::string add_tests(const std::string& folder) {
-  for (const Erratum& erratum : errata()) {
-    if (const std::string text = test_excerpt(erratum.test); !text.empty()) {
-      write_file(fmt::format("{}/test-{}.txt", folder, erratum.id), text);
-    }
-  }
-  return "";
-}
-
 }  // namespace
 
 ThesisFigure errata_table() {
@@ -234,8 +223,7 @@ ThesisFigure errata_table() {
           "with what the runs said, with the contradictions within the thesis, and with the claims "
           "that no run here decides.",
       .script = "",
-      .measure = measure,
-      .draw = add_tests};
+      .measure = measure};
 }
 
 }  // namespace kairos::experiments::thesis

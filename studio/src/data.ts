@@ -1,4 +1,5 @@
 // What `kairos view` puts into the page, see README.md.
+import { inSlices } from "./pause";
 
 export type ShapeKind = "sphere" | "box" | "half-space" | "capsule" | "cylinder" | "cone" | "hull" | "mesh" | "compound";
 
@@ -130,12 +131,13 @@ const digits = new Uint8Array(128);
   digits[c.charCodeAt(0)] = i;
 });
 
-/** RFC 4648; `atob` would make a text of it first. */
-export function fromBase64(text: string): ArrayBuffer {
+/** RFC 4648, some 100 kB a piece; `atob` would make a text of it first. */
+export function* fromBase64(text: string): Generator<void, ArrayBuffer> {
   const padding = text.endsWith("==") ? 2 : text.endsWith("=") ? 1 : 0;
   const bytes = new Uint8Array((text.length / 4) * 3 - padding);
   let out = 0;
   for (let i = 0; i < text.length; i += 4) {
+    if (i % 131072 === 131068) yield;
     const group =
       (digits[text.charCodeAt(i)] << 18) |
       (digits[text.charCodeAt(i + 1)] << 12) |
@@ -183,7 +185,7 @@ export function readRun(text: RunText, buffer: ArrayBuffer): Run {
     frames,
     energy: Object.keys(text.arrays)
       .filter((name) => name.startsWith("energy."))
-      .map((name) => ({ name: name.slice("energy.".length).replaceAll("-", " "), values: f64(name) })),
+      .map((name) => ({ name: name.slice("energy.".length).replace(/[-_]/g, " "), values: f64(name) })),
     events: {
       time: f64("event.time"),
       kind: u8("event.kind"),
@@ -198,14 +200,15 @@ export function readRun(text: RunText, buffer: ArrayBuffer): Run {
 }
 
 /** The runs of this page. */
-export function readPage(): Run[] {
+export async function readPage(): Promise<Run[]> {
   const json = document.getElementById("kairos-run")?.textContent;
   if (!json) throw new Error("this page holds no run: `kairos view` makes one that does");
   const page = JSON.parse(json) as { runs: Record<string, RunText> };
-  return Object.values(page.runs).map((text, i) => {
+  const runs: Run[] = [];
+  for (const [i, text] of Object.values(page.runs).entries()) {
     const block = document.getElementById(`kairos-numbers-${i}`);
-    const run = readRun(text, fromBase64(block?.textContent ?? ""));
+    runs.push(readRun(text, await inSlices(fromBase64(block?.textContent ?? ""))));
     block?.remove();
-    return run;
-  });
+  }
+  return runs;
 }

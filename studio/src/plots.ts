@@ -4,6 +4,7 @@ import type { Run } from "./data";
 import { number } from "./format";
 import { newState } from "./motion";
 import type { Palette } from "./palette";
+import { inSlices } from "./pause";
 import { after, before } from "./search";
 import type { World } from "./world";
 
@@ -219,21 +220,20 @@ export class Plots {
     const job = ++this.job;
     const [from, to] = this.range;
     const runs = this.worlds.map((world) => world.run);
-    this.energy.set(energyOf(runs, from, to, this.colour, this.names), "Energy and where it went", from, to, this.colour);
     const times = this.sampleTimes(body, from, to);
     const lines = this.bodyPlots.map(() => runs.map((_, r): Line => ({
       label: runs.length > 1 ? "AB"[r] : "", run: r, colour: this.colour.lines[r], values: [],
     })));
-    const work = this.sample(body, other, times, lines);
-    const slice = () => {
-      if (job !== this.job) return;
-      const until = performance.now() + 8;
-      while (performance.now() < until) {
-        if (work.next().done) return this.finish(body, other, times, lines);
+    const { energy, colour, names } = this;
+    const work = function* (this: Plots): Generator<void> {
+      energy.set(energyOf(runs, from, to, colour, names), "Energy and where it went", from, to, colour);
+      for (const _ of this.sample(body, other, times, lines)) {
+        if (job !== this.job) return;
+        yield;
       }
-      setTimeout(slice);
+      yield* this.finish(job, body, other, times, lines);
     };
-    slice();
+    void inSlices(work.call(this));
   }
 
   /** Even times, and those just before and after the body's own events. */
@@ -267,7 +267,7 @@ export class Plots {
     }
   }
 
-  private finish(body: number, other: number, times: number[], lines: Line[][]): void {
+  private *finish(job: number, body: number, other: number, times: number[], lines: Line[][]): Generator<void> {
     const bodies = this.worlds[0].run.bodies;
     const name = bodies[body].name;
     const captions = [
@@ -275,10 +275,12 @@ export class Plots {
       `Gap of ${name} to ${other >= 0 ? bodies[other].name : "the nearest"}`,
       `Speed of ${name}`,
     ];
-    this.bodyPlots.forEach((plot, i) => {
+    for (const [i, plot] of this.bodyPlots.entries()) {
       lines[i].forEach((line) => { line.label = line.label || plot.title.toLowerCase(); });
       plot.set({ times, lines: lines[i] }, captions[i], this.range[0], this.range[1], this.colour);
-    });
+      yield;
+      if (job !== this.job) return;
+    }
     this.at(this.shown);
   }
 

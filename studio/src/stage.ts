@@ -2,6 +2,7 @@
 import { PerspectiveCamera, Raycaster, Vector2, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { newState } from "./motion";
+import { pause } from "./pause";
 import type { Look, World } from "./world";
 
 export interface Rect { x: number; y: number; width: number; height: number }
@@ -13,15 +14,18 @@ export class Stage {
   following = false;
   private origins: Vector3[];
   private readonly state = newState();
+  /** The camera moved. */
+  changed: () => void = () => undefined;
 
-  constructor(readonly canvas: HTMLCanvasElement, public worlds: World[], changed: () => void) {
+  constructor(readonly canvas: HTMLCanvasElement, public worlds: World[]) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true });
     this.renderer.setScissorTest(true);
     this.renderer.localClippingEnabled = true;
+    this.renderer.debug.checkShaderErrors = false; // it waits for the graphics card
     this.origins = worlds.map(() => new Vector3());
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.zoomToCursor = true;
-    this.controls.addEventListener("change", changed);
+    this.controls.addEventListener("change", () => this.changed());
     this.fit();
   }
 
@@ -118,6 +122,18 @@ export class Stage {
       stacked
         ? { x: 0, y: (i * height) / n, width, height: height / n }
         : { x: (i * width) / n, y: 0, width: width / n, height });
+  }
+
+  /** Has all that is drawn of the worlds compiled for the graphics card, where it can meanwhile. */
+  async prepare(t: number, look: Look, body: number): Promise<void> {
+    const meanwhile = this.renderer.getContext().getExtension("KHR_parallel_shader_compile") !== null;
+    for (const world of this.worlds) {
+      world.show(Math.min(t, world.run.end), new Vector3(), look, body);
+      world.lookFrom(this.camera);
+      if (meanwhile) await this.renderer.compileAsync(world.scene, this.camera);
+      else this.renderer.compile(world.scene, this.camera);
+      await pause();
+    }
   }
 
   draw(t: number, look: Look, body: number): void {

@@ -6,7 +6,8 @@ import type { Run } from "./data";
 import { Film, compose, filmType, save, type Caption } from "./export";
 import { number, seconds } from "./format";
 import { newState } from "./motion";
-import { palette } from "./palette";
+import { palette, type Palette } from "./palette";
+import { pause } from "./pause";
 import { Player } from "./player";
 import { Plots } from "./plots";
 import { Stage } from "./stage";
@@ -35,24 +36,39 @@ const views = {
 
 export class Viewer {
   readonly player: Player;
-  readonly stage: Stage;
-  worlds: World[];
   readonly plots: Plots;
   /** Somebody chose a body. */
   chosen: (body: number) => void = () => undefined;
   private readonly timeline: Timeline;
-  private readonly colour = palette(matchMedia("(prefers-color-scheme: dark)").matches);
+  /** Worlds that are shown no more; what they hold on the graphics card serves until others are drawn. */
+  private past: World[] = [];
   private dirty = true;
   body: number;
   private film: Film | null = null;
   private readonly composed = document.createElement("canvas");
   private said = "";
 
-  constructor(public runs: Run[]) {
-    this.worlds = runs.map((run) => new World(run, this.colour));
+  /** Piece by piece, so that the page is never blocked for long. */
+  static async open(runs: Run[]): Promise<Viewer> {
+    const colour = palette(matchMedia("(prefers-color-scheme: dark)").matches);
+    const worlds: World[] = [];
+    for (const run of runs) {
+      worlds.push(new World(run, colour));
+      await pause();
+    }
+    const stage = new Stage(element<HTMLCanvasElement>("canvas"), worlds);
+    await pause();
+    const viewer = new Viewer(runs, worlds, stage, colour);
+    await pause();
+    await stage.prepare(viewer.player.time, viewer.look, viewer.body);
+    requestAnimationFrame(viewer.loop);
+    return viewer;
+  }
+
+  private constructor(public runs: Run[], public worlds: World[], readonly stage: Stage, private readonly colour: Palette) {
     const changed = () => { this.dirty = true; };
     this.player = new Player(runs, changed);
-    this.stage = new Stage(element<HTMLCanvasElement>("canvas"), this.worlds, changed);
+    stage.changed = changed;
     this.timeline = new Timeline(element<HTMLCanvasElement>("ticks"), box("scrubber"), this.player, this.colour);
     this.plots = new Plots(element("plots"), this.worlds, this.player.end, this.colour,
       (t) => this.player.seek(t), (whole) => this.markRange(whole));
@@ -71,13 +87,12 @@ export class Viewer {
     });
     this.timeline.draw();
     this.stage.fit();
-    requestAnimationFrame(this.loop);
   }
 
   /** Other runs in the place of these: time, view, and the body that is looked at stay. */
   replace(runs: Run[], refit: boolean): void {
     const name = this.runs[0].bodies[this.body]?.name;
-    this.worlds.forEach((world) => world.dispose());
+    this.past.push(...this.worlds);
     this.runs = runs;
     this.worlds = runs.map((run) => new World(run, this.colour));
     this.player.load(runs);
@@ -270,6 +285,7 @@ export class Viewer {
     const { player } = this;
     const t = this.shown();
     this.stage.draw(t, this.look, this.body);
+    this.past.splice(0).forEach((world) => world.dispose());
     this.timeline.at(player.time);
     this.plots.at(player.time);
     this.writeClock(t);

@@ -367,7 +367,7 @@ export class World {
       ++drawn;
       const v = events.vectors.subarray(9 * e, 9 * e + 9);
       const known = v[0] !== 0 || v[1] !== 0 || v[2] !== 0 || v[3] !== 0 || v[4] !== 0 || v[5] !== 0;
-      const fade = 1 - (t - events.time[e]) / 0.3;
+      const fade = 1 - (t - events.time[e]) / 0.5;
       if (known) {
         this.p.set(v[0], v[1], v[2]);
       } else { // a law without contact points: at the first body that moves

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { stat } from "node:fs/promises";
 import { dirname, join } from "node:path";
 import { after, before, test } from "node:test";
-import { browser, folder, open, program, studioPage } from "./pages.mjs";
+import { browser, folder, kairos, open, program, studioPage } from "./pages.mjs";
 import { syntheticPage } from "./synthetic.mjs";
 
 let chrome, place;
@@ -19,15 +19,22 @@ after(async () => {
 
 const small = { viewport: { width: 950, height: 700 }, deviceScaleFactor: 0.5 };  // pixels cost where they are drawn in software
 
-/** What the page's own thread does meanwhile: time on a processor, of all its tasks and of the longest, ms. */
-async function traced(page, act) {
-  await chrome.startTracing(page, { categories: ["toplevel", "__metadata"] });
-  const frames = await act();
+const watch = (page) => chrome.startTracing(page, { categories: ["toplevel", "__metadata", "devtools.timeline"] });
+
+/** Since `watch`, of the threads that `main` picks from what was traced: time on a processor, of all tasks and of the longest, ms. */
+async function watched(main) {
   const { traceEvents } = JSON.parse((await chrome.stopTracing()).toString());
-  const main = new Set(traceEvents.filter((e) => e.name === "thread_name" && e.args.name === "CrRendererMain").map((e) => `${e.pid} ${e.tid}`));
-  const tasks = traceEvents.filter((e) => e.ph === "X" && e.name === "ThreadControllerImpl::RunTask" && e.tdur && main.has(`${e.pid} ${e.tid}`)).map((e) => e.tdur / 1000);
+  const threads = new Set(traceEvents.filter(main).map((e) => `${e.pid} ${e.tid}`));
+  const tasks = traceEvents.filter((e) => e.ph === "X" && e.name === "ThreadControllerImpl::RunTask" && e.tdur && threads.has(`${e.pid} ${e.tid}`)).map((e) => e.tdur / 1000);
   assert.ok(tasks.length > 10);
-  return { frames, milliseconds: tasks.reduce((sum, each) => sum + each, 0), longest: Math.max(...tasks) };
+  return { milliseconds: tasks.reduce((sum, each) => sum + each, 0), longest: Math.max(...tasks) };
+}
+
+/** What the page's own thread does meanwhile. */
+async function traced(page, act) {
+  await watch(page);
+  const frames = await act();
+  return { frames, ...await watched((e) => e.name === "thread_name" && e.args.name === "CrRendererMain") };
 }
 
 /** A second and a half of play, of the viewer that the page calls `name`. */
@@ -63,6 +70,23 @@ test("the page: its size, and how long it takes to start", async () => {
   assert.ok(ready < 20_000);
   await context.close();
 });
+
+for (const [what, make, ready] of [
+  ["a viewer of two methods", async (file) => { await kairos("view", "table-tennis", "--beside", "thesis", "--out", file); return file; }, () => window.kairos],
+  ["the studio", async () => studioPage, () => window.studio?.viewer],
+]) {
+  test(`${what} starts without a task beyond 50 ms`, async () => {
+    const file = await make(join(place.path, "start.html"));
+    const { page, context } = await open(chrome, file, { ready, before: watch });
+    const shown = await page.evaluate(() => performance.now());
+    await page.evaluate(() => new Promise((done) => { setTimeout(done, 1000); })); // plots, the first pictures
+    // Other tabs have threads of the same name: this one's evaluates the scripts of a file.
+    const { milliseconds, longest } = await watched((e) => e.name === "EvaluateScript" && e.args?.data?.url?.startsWith("file:"));
+    console.log(`# ${what}: shown after ${(shown / 1000).toFixed(2)} s; ${milliseconds.toFixed(0)} ms of the page's processor until it rests, longest task ${longest.toFixed(0)} ms`);
+    assert.ok(longest < 50, `the page is blocked for ${longest} ms`);
+    await context.close();
+  });
+}
 
 for (const [what, scene, simulated, bodies] of [["200 balls, event-driven", gas(200), 2, 206], ["50 resting boxes, event-driven", boxes(5, 10), 10, 51]]) {
   test(`${what}: simulation and frames keep up with time`, async () => {

@@ -31,7 +31,7 @@ export function browser() {
 }
 
 /** Opens a file without a network; `said` collects what a silent page does not say. */
-export async function open(chrome, file, { ready = () => window.kairos !== undefined, hash = "", ...options } = {}) {
+export async function open(chrome, file, { ready = () => window.kairos !== undefined, hash = "", before = async () => {}, ...options } = {}) {
   const context = await chrome.newContext({ viewport: { width: 1280, height: 900 }, offline: true, acceptDownloads: true, ...options });
   const page = await context.newPage();
   const said = [];
@@ -42,6 +42,7 @@ export async function open(chrome, file, { ready = () => window.kairos !== undef
     if (!/^(file|data|blob):/.test(request.url())) asked.push(request.url());
   });
   page.setDefaultTimeout(60_000); // software rendering on a busy machine
+  await before(page);
   await page.goto(pathToFileURL(file).href + hash, { timeout: 60_000 });
   await page.waitForFunction(ready, undefined, { timeout: 60_000 });
   return { page, context, said, asked };

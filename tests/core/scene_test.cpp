@@ -1,8 +1,11 @@
 #include "core/scene.hpp"
 
+#include "core/compound_body.hpp"
 #include "core/entity.hpp"
 #include "core/error.hpp"
 #include "core/exact_solution.hpp"
+#include "core/mesh_body.hpp"
+#include "core/mesh_shapes.hpp"
 #include "core/model.hpp"
 #include "core/nearest_name.hpp"
 #include "core/reading/csv.hpp"
@@ -210,4 +213,25 @@ TEST_CASE("numbers: only whole finite decimal numbers are numbers", "[scene]") {
     INFO(text);
     CHECK_FALSE(parse_number(text).has_value());
   }
+}
+
+TEST_CASE(
+    "a mesh collides as the box that the thesis fits, between its least and greatest coordinates") {
+  MeshData data = box_mesh({0.5, 1.0, 2.0});
+  Body body;
+  body.bounds = Bounds::obb;
+  body.shape = Mesh{mesh_in_place(data, CollisionMesh::Kind::solid)};
+  const Shape central = body.collision_shape();
+  REQUIRE(std::holds_alternative<Box>(central));
+  CHECK(std::get<Box>(central).half_extents.isApprox(Vector3(0.5, 1.0, 2.0), 1e-15));
+  for (Vector3& vertex : data.vertices) {
+    vertex += Vector3(0.0, -3.0, 0.25);
+  }
+  body.shape = Mesh{mesh_in_place(data, CollisionMesh::Kind::solid)};
+  const Shape aside = body.collision_shape();
+  REQUIRE(std::holds_alternative<Compound>(aside));  // a box about the origin would be 4 m high
+  const auto& parts = std::get<Compound>(aside).body->parts;
+  REQUIRE(parts.size() == 1);
+  CHECK(parts[0].pose.position.isApprox(Vector3(0.0, -3.0, 0.25), 1e-15));
+  CHECK(std::get<Box>(parts[0].shape).half_extents.isApprox(Vector3(0.5, 1.0, 2.0), 1e-15));
 }

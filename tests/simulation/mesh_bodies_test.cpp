@@ -222,6 +222,33 @@ position = [1, 0, 0]
   CHECK(bounding_box(stone.shape).half_extents.x() == Approx(0.6).epsilon(1e-14));
 }
 
+/// A slab that is 0.3 m thick above its middle, half of it rounding.
+const std::string rounded_slab = R"(
+shape = "compound"
+[[body.part]]
+shape = "hull"
+points = [[3, 0.15, 3], [-3, 0.15, 3], [3, 0.15, -3], [-3, 0.15, -3], [3, -0.15, 3], [-3, -0.15, 3], [3, -0.15, -3], [-3, -0.15, -3]]
+rounding = 0.15
+position = [0, -0.3, 0]
+)";
+
+TEST_CASE("a part that is a rounded hull is one in walls, and refused in what moves freely",
+          "[meshes]") {
+  const tests::TemporaryFolder folder;
+  const std::string box = "half_extents = [0.1, 0.2, 0.3]";
+  const std::vector<double> plane = impacts(run(folder, scene("shape = \"half-space\"", box)));
+  const std::vector<double> slab = impacts(run(folder, scene(rounded_slab, box)));
+  REQUIRE(plane.size() >= 4);
+  REQUIRE(slab.size() >= 4);  // without its rounding it is 0.15 m lower
+  for (std::size_t i = 0; i < 4; ++i) {
+    CHECK(std::abs(plane[i] - slab[i]) < 1e-10);  // chaotic, as above
+  }
+  const auto read = [&](const std::string& stone) {
+    return read_scene(folder.file("scene.toml", scene("shape = \"half-space\"", stone)));
+  };
+  CHECK(says(complaint(read, rounded_slab), "the centre of mass of a rounded hull is not known"));
+}
+
 TEST_CASE("a height field that is flat is a floor", "[meshes]") {
   const tests::TemporaryFolder folder;
   const std::string field =

@@ -1,6 +1,7 @@
 #include "core/schemes/shared/energy_account.hpp"
 
 #include "core/joint_system.hpp"
+#include "core/spin_energy.hpp"
 
 #include <array>
 
@@ -27,15 +28,10 @@ double kinetic_gain(double m, const Vector3& v0, const Vector3& v1) {
   return 0.5 * m * (v1 - v0).dot(v1 + v0);
 }
 
-double spin_energy(const BodyInertia& inertia, const BodyState& s) {
-  const Vector3 w_B = inertia.principal_axes(s.pose.orientation).conjugate() * s.twist.angular;
-  return 0.5 * w_B.dot(inertia.principal.cwiseProduct(w_B));
-}
-
 /// What rotation gained, by principal axes: a body that tumbles moves energy from one to another.
 Vector3 spin_gains(const BodyInertia& inertia, const BodyState& from, const BodyState& to) {
-  const Vector3 w0 = inertia.principal_axes(from.pose.orientation).conjugate() * from.twist.angular;
-  const Vector3 w1 = inertia.principal_axes(to.pose.orientation).conjugate() * to.twist.angular;
+  const Vector3 w0 = principal_rates(inertia, from);
+  const Vector3 w1 = principal_rates(inertia, to);
   return 0.5 * inertia.principal.cwiseProduct((w1 - w0).cwiseProduct(w1 + w0));
 }
 

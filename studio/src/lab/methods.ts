@@ -91,7 +91,7 @@ export class Methods {
       else {
         input.type = "text";
         input.inputMode = info.kind === "number" || info.kind === "count" ? "decimal" : "text";
-        input.placeholder = info.default === "" ? "as the scene says" : info.default;
+        input.placeholder = info.default === "" ? "the scene's" : info.default;
         input.size = 10;
       }
       const unit = info.unit === "" ? "" : ` (${info.unit})`;

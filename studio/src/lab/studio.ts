@@ -3,6 +3,7 @@ import { Quaternion } from "three";
 import { fromBase64, type Run } from "../data";
 import { save } from "../export";
 import { seconds } from "../format";
+import { inSlices, pause } from "../pause";
 import { box, element, list, option, Viewer } from "../viewer";
 import { EngineClient, type Outcome } from "./client";
 import { Drag, type Deed, type Tool } from "./drag";
@@ -56,12 +57,15 @@ export class Studio {
   outcome: Outcome | null = null;
 
   static async open(): Promise<Studio> {
+    await pause(); // what the script itself took is long enough
     const files = JSON.parse(embedded("studio-files")) as Record<string, string>;
     const keys = JSON.parse(embedded("studio-keys")) as KeyTable;
-    const wasm = await unzip(new Uint8Array(fromBase64(embedded("studio-engine").trim())));
+    const wasm = await unzip(new Uint8Array(await inSlices(fromBase64(embedded("studio-engine").trim()))));
     const client = new EngineClient(embedded("studio-worker"), wasm.buffer as ArrayBuffer, files);
     const about = await client.loaded();
+    await pause();
     const studio = new Studio(client, about, files, keys);
+    await pause();
     await studio.begin();
     return studio;
   }
@@ -152,7 +156,7 @@ export class Studio {
     button("stop").hidden = true;
     this.outcome = outcome;
     this.complain(outcome.errors);
-    if (outcome.runs.length > 0) this.show(outcome.runs.map((run) => delayed(run, by)));
+    if (outcome.runs.length > 0) await this.show(outcome.runs.map((run) => delayed(run, by)));
     const times = outcome.answers.map((answer, i) => `${"AB"[i]} ${answer.milliseconds.toFixed(answer.milliseconds < 10 ? 1 : 0)} ms`);
     element("cost").textContent = `computed in ${times.join(", ")}`;
   }
@@ -168,9 +172,12 @@ export class Studio {
     wrong.textContent = scene.map((error) => `${error.line > 0 ? `line ${error.line}: ` : ""}${error.key === "" ? "" : `${error.key}: `}${error.reason}`).join("; ");
   }
 
-  private show(runs: Run[]): void {
-    if (!this.viewer) {
-      this.viewer = new Viewer(runs);
+  private opening: Promise<Viewer> | null = null;
+
+  private async show(runs: Run[]): Promise<void> {
+    if (!this.viewer && !this.opening) {
+      this.opening = Viewer.open(runs);
+      this.viewer = await this.opening;
       new Drag(this.viewer.stage, {
         tool: () => (this.mine ? (list("tool").value as Tool) : "view"),
         take: (body) => this.take(body),
@@ -180,7 +187,7 @@ export class Studio {
       this.viewer.chosen = (body) => this.chose(body);
       this.chose(this.viewer.body);
     } else {
-      this.viewer.replace(runs, this.refit);
+      (this.viewer ?? await this.opening!).replace(runs, this.refit);
     }
     this.refit = false;
     const note = element("later");

@@ -1,0 +1,36 @@
+#include "ccd/bounds_ahead.hpp"
+
+#include <algorithm>
+
+namespace kairos::ccd {
+namespace {
+
+/// How long a piece is, and by how much it may be too long, in steps.
+constexpr double steps_of_piece = 4.0;
+constexpr double steps_too_long = 16.0;
+
+}  // namespace
+
+void BoundsAhead::begin(double t, double piece) {
+  turn_ = motion_.bounds(t, piece);
+  made_at_ = t;
+  used_again_ = false;
+}
+
+void BoundsAhead::renew(double t, double last_step) {
+  if (motion_.simple()) {
+    turn_.until = motion_.duration();
+    return;
+  }
+  const bool too_long = last_step > 0.0 && t + steps_too_long * last_step < turn_.until;
+  if (too_long || t >= turn_.until) {
+    const double remaining = motion_.duration() - t;
+    begin(t, last_step > 0.0 ? std::min(remaining, steps_of_piece * last_step) : remaining);
+  } else if (t > made_at_ && !used_again_) {
+    // How far d is bent from what it was there, and that from what it is here.
+    turn_.bend *= 2.0;
+    used_again_ = true;
+  }
+}
+
+}  // namespace kairos::ccd

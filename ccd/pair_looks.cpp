@@ -1,0 +1,65 @@
+#include "ccd/pair_looks.hpp"
+
+#include "ccd/separation_function.hpp"
+
+#include <algorithm>
+
+namespace kairos::ccd {
+
+Look PairLooks::look(double t) {
+  Look at;
+  motion_.evaluate(t, at.k);
+  at.witness = find_witness(kind_, motion_, at.k);
+  ++count_;
+  return at;
+}
+
+double PairLooks::approach(const Look& at) const {
+  return -SeparationFunction(motion_, at.k, motion_.bounds(at.t(), 0.0), at.witness).rate();
+}
+
+double PairLooks::step_along(const Kinematics& k, const Witness& witness, const TurnBounds& bounds,
+                             double horizon) const {
+  return witness.gap > k.error ? SeparationFunction(motion_, k, bounds, witness).advance(horizon)
+                               : 0.0;
+}
+
+double PairLooks::safe_step(const Kinematics& k, const Witness& witness, const TurnBounds& bounds,
+                            double horizon) const {
+  const SeparationFunction moving(motion_, k, bounds, witness);
+  double step = moving.advance(horizon);
+  const bool turns = motion_.turns_a() || motion_.turns_b();
+  if (!turns || step >= horizon) {
+    return step;
+  }
+  // More than half of what the approach alone would allow: turning hardly matters.
+  const double closing = -moving.rate();
+  if (closing > 0.0 && 2.0 * step * closing > witness.gap) {
+    return step;
+  }
+  const auto try_along = [&](const Witness& other) {
+    step = step < horizon ? std::max(step, step_along(k, other, bounds, horizon)) : step;
+  };
+  try_along(between_balls(kind_, motion_, k));
+  try_along(between_hulls(kind_, motion_, k, witness));
+  const bool turns_with_plane = against_plane(kind_) && motion_.turns_b();
+  if (witness.frame != WitnessFrame::world && !turns_with_plane) {
+    Witness still = witness;
+    still.frame = WitnessFrame::world;
+    try_along(still);
+  }
+  return step;
+}
+
+double PairLooks::step_beside_hulls(const Look& at, const TurnBounds& bounds,
+                                    double horizon) const {
+  Witness hulls = between_hulls(kind_, motion_, at.k, at.witness);
+  if (!(hulls.gap > at.k.error)) {
+    Witness nearest = at.witness;
+    nearest.n = between_spun_boxes(kind_, motion_, at.k);
+    hulls = between_hulls(kind_, motion_, at.k, nearest);
+  }
+  return step_along(at.k, hulls, bounds, horizon);
+}
+
+}  // namespace kairos::ccd
