@@ -225,7 +225,7 @@ class Attempt {
       return;
     }
     forces_.slow_down(found.choices, mode_.velocities);
-    clean();
+    clean(found.choices);
     for (std::size_t k = 0; k < touches().size() && mode_.refusal.empty(); ++k) {
       if (found.choices[k].does != Does::opens) {
         follow(touches()[k], found.choices[k]);
@@ -233,8 +233,11 @@ class Attempt {
     }
   }
 
-  /// Roundoff of what was solved for to be nothing is nothing.
-  void clean() {
+  /// Roundoff of what was solved for to be nothing is nothing; a small part of a slow
+  /// way along a contact is none.
+  void clean(const std::vector<Choice>& choices) {
+    const std::vector<Twist> velocities = mode_.velocities;
+    const std::vector<Twist> accelerations = mode_.accelerations;
     for (std::size_t i = 0; i < group_.bodies.size(); ++i) {
       if (!moves(group_.bodies[i])) {
         continue;
@@ -251,6 +254,15 @@ class Attempt {
         }
       }
     }
+    ContactSystem held{group_.bodies, {}};
+    for (std::size_t k = 0; k < touches().size(); ++k) {
+      const Touch& t = touches()[k];
+      if (choices[k].does != Does::opens) {
+        held.rows.push_back({t.a, t.b, t.n, Vector3::Zero(), Vector3::Zero()});
+      }
+    }
+    held.undo_where_faster(velocities, mode_.velocities);
+    held.undo_where_faster(accelerations, mode_.accelerations);
   }
 
   /// What a touch does from here on, and how long it slides.

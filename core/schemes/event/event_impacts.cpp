@@ -250,6 +250,7 @@ void EventContacts::leave_at_rest(const EventModes::GroupImpact& impact,
     fastest = std::max(fastest, before.linear.norm());
   }
   const double least = 64.0 * epsilon * fastest;
+  const std::vector<Twist> struck = v;
   for (std::size_t k = 0; k < v.size(); ++k) {
     if (!run_.model.is_free(impact.bodies[k])) {
       continue;
@@ -262,6 +263,14 @@ void EventContacts::leave_at_rest(const EventModes::GroupImpact& impact,
       angular = std::abs(angular) * radius <= least ? 0.0 : angular;
     }
   }
+  // A part of a slow way along a contact is none: without it, the way would lead into the contact.
+  ContactSystem at_rest{impact.system.bodies, {}};
+  for (const ContactRow& row : impact.system.rows) {
+    if (std::abs(impact.system.rate(row, struck)) <= least) {
+      at_rest.rows.push_back(row);
+    }
+  }
+  at_rest.undo_where_faster(struck, v);
 }
 
 /// A law that knows groups strikes all of them at once; false where there is no group, or the law
