@@ -58,26 +58,27 @@ int flush_results() {
 }
 
 void add_commands(CLI::App& app) {
-  add_run_command(app);
-  add_explain_command(app);
-  add_list_command(app);
-  add_toi_command(app);
-  add_vfee_command(app);
-  add_mesh_command(app);
-  add_collide_command(app);
-  add_distance_command(app);
-  add_sweep_command(app);
-  add_experiment_command(app);
-  add_reproduce_command(app);
-  add_render_command(app);
-  add_view_command(app);
-  add_plot_command(app);
-  add_record_command(app);
-  add_physworld_command(app);
-  add_bench_command(app);
-  add_tradeoff_command(app);
-  add_recommend_command(app);
-  add_random_scenes_command(app);
+  Command program(app);
+  add_run_command(program);
+  add_explain_command(program);
+  add_list_command(program);
+  add_toi_command(program);
+  add_vfee_command(program);
+  add_mesh_command(program);
+  add_collide_command(program);
+  add_distance_command(program);
+  add_sweep_command(program);
+  add_experiment_command(program);
+  add_reproduce_command(program);
+  add_render_command(program);
+  add_view_command(program);
+  add_plot_command(program);
+  add_record_command(program);
+  add_physworld_command(program);
+  add_bench_command(program);
+  add_tradeoff_command(program);
+  add_recommend_command(program);
+  add_random_scenes_command(program);
 }
 
 /// CLI11 only says that a command is missing where a person has mistyped one.

@@ -4,7 +4,6 @@
 #include "experiments/cli/commands.hpp"
 #include "experiments/run_error.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -71,55 +70,54 @@ struct BenchCommand {
 
 }  // namespace
 
-void add_bench_command(CLI::App& app) {
+void add_bench_command(Command& app) {
   const auto options = std::make_shared<BenchCommand>();
-  CLI::App* bench = app.add_subcommand(
+  Command bench = app.add_subcommand(
       "bench", "Time it: ratios within one run, interleaved, the least of several rounds");
   bench
-      ->add_option("name", options->name,
-                   "bounce, ccd, contact, vfee, meshes, shapes, bats or gas: times; without it the "
-                   "first two; accuracy: answers against a reference")
-      ->check(CLI::IsMember(
-          {"bounce", "ccd", "contact", "vfee", "meshes", "shapes", "bats", "gas", "accuracy"}));
-  bench->add_option("--rounds", options->rounds, "how often each is timed")
-      ->check(whole_number(1, 1000))
-      ->capture_default_str();
+      .add_option("name", options->name,
+                  "bounce, ccd, contact, vfee, meshes, shapes, bats or gas: times; without it the "
+                  "first two; accuracy: answers against a reference")
+      .one_of({"bounce", "ccd", "contact", "vfee", "meshes", "shapes", "bats", "gas", "accuracy"});
+  bench.add_option("--rounds", options->rounds, "how often each is timed")
+      .check(whole_number(1, 1000))
+      .capture_default_str();
   bench
-      ->add_option("--pairs", options->pairs,
-                   "ccd, vfee, shapes (at most 16384): how many distinct pairs")
-      ->check(whole_number(1, 1 << 22))
-      ->capture_default_str();
-  bench->add_option("--rallies", options->rallies, "bats: how many")
-      ->check(whole_number(1, 100'000))
-      ->capture_default_str();
-  bench->add_option("--balls", options->balls, "gas: how many, one gas for each number")
-      ->check(whole_number(2, 10'000'000))
-      ->type_name("N...")
-      ->capture_default_str();
-  bench->add_option("--boxes", options->boxes, "gas: how many boxes, one gas for each number")
-      ->check(whole_number(2, 10'000'000))
-      ->type_name("N...")
-      ->capture_default_str();
+      .add_option("--pairs", options->pairs,
+                  "ccd, vfee, shapes (at most 16384): how many distinct pairs")
+      .check(whole_number(1, 1 << 22))
+      .capture_default_str();
+  bench.add_option("--rallies", options->rallies, "bats: how many")
+      .check(whole_number(1, 100'000))
+      .capture_default_str();
+  bench.add_option("--balls", options->balls, "gas: how many, one gas for each number")
+      .check(whole_number(2, 10'000'000))
+      .type_name("N...")
+      .capture_default_str();
+  bench.add_option("--boxes", options->boxes, "gas: how many boxes, one gas for each number")
+      .check(whole_number(2, 10'000'000))
+      .type_name("N...")
+      .capture_default_str();
   AccuracyOptions& accuracy = options->accuracy;
-  bench->add_option("--queries", accuracy.queries, "accuracy: how many")
-      ->check(whole_number(1, 1'000'000'000))
-      ->capture_default_str();
-  bench->add_option("--seed", accuracy.seed, "accuracy: of the queries")
-      ->check(seed_number())
-      ->capture_default_str();
-  bench->add_option("--detector", accuracy.detectors, "accuracy: these only")->type_name("D...");
+  bench.add_option("--queries", accuracy.queries, "accuracy: how many")
+      .check(whole_number(1, 1'000'000'000))
+      .capture_default_str();
+  bench.add_option("--seed", accuracy.seed, "accuracy: of the queries")
+      .check(seed_number())
+      .capture_default_str();
+  bench.add_option("--detector", accuracy.detectors, "accuracy: these only").type_name("D...");
   bench
-      ->add_option("--judge-every", accuracy.judge_every,
-                   "accuracy: hold only one in N against the reference")
-      ->check(whole_number(1, 1'000'000'000))
-      ->type_name("N");
-  bench->add_option("--threads", accuracy.threads, "accuracy: how many (default: one per core)")
-      ->check(whole_number(0, 1024));
-  bench->add_option("--out", accuracy.out, "accuracy: folder for accuracy.csv and queries.csv")
-      ->type_name("DIR")
-      ->check(some_path());
-  bench->add_flag("--force", accuracy.force, "accuracy: replace files that are not its own");
-  bench->callback([options] { options->run(); });
+      .add_option("--judge-every", accuracy.judge_every,
+                  "accuracy: hold only one in N against the reference")
+      .check(whole_number(1, 1'000'000'000))
+      .type_name("N");
+  bench.add_option("--threads", accuracy.threads, "accuracy: how many (default: one per core)")
+      .check(whole_number(0, 1024));
+  bench.add_option("--out", accuracy.out, "accuracy: folder for accuracy.csv and queries.csv")
+      .type_name("DIR")
+      .check(some_path());
+  bench.add_flag("--force", accuracy.force, "accuracy: replace files that are not its own");
+  bench.callback([options] { options->run(); });
 }
 
 }  // namespace kairos::experiments

@@ -7,7 +7,6 @@
 #include "experiments/report/report_entry.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -63,19 +62,19 @@ struct ExperimentCommand {
 
 }  // namespace
 
-void add_experiment_command(CLI::App& app) {
+void add_experiment_command(Command& app) {
   const auto command = std::make_shared<ExperimentCommand>();
-  CLI::App* experiment = app.add_subcommand("experiment", "Run an experiment by name");
+  Command experiment = app.add_subcommand("experiment", "Run an experiment by name");
   experiment
-      ->add_option("name", command->name,
-                   fmt::format("one of: table-tennis, {}; or a figure of `kairos reproduce`",
-                               fmt::join(shipped_experiments(), ", ")))
-      ->required();
-  experiment->add_option("--out", command->out, "folder for tables and figures; default out/NAME")
-      ->type_name("DIR")
-      ->check(some_path());
-  command->size.add_to(*experiment);
-  experiment->callback([command] { command->run(); });
+      .add_option("name", command->name,
+                  fmt::format("one of: table-tennis, {}; or a figure of `kairos reproduce`",
+                              fmt::join(shipped_experiments(), ", ")))
+      .required();
+  experiment.add_option("--out", command->out, "folder for tables and figures; default out/NAME")
+      .type_name("DIR")
+      .check(some_path());
+  command->size.add_to(experiment);
+  experiment.callback([command] { command->run(); });
 }
 
 }  // namespace kairos::experiments

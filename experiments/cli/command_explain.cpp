@@ -3,7 +3,6 @@
 #include "experiments/cli/run_options.hpp"
 #include "simulation/registry.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -108,12 +107,12 @@ void explain(const SceneOptions& options) {
 
 }  // namespace
 
-void add_explain_command(CLI::App& app) {
+void add_explain_command(Command& app) {
   const auto options = std::make_shared<SceneOptions>();
-  CLI::App* command = app.add_subcommand(
+  Command command = app.add_subcommand(
       "explain", "Say what the model of a scene leaves out, what it chooses, and why");
-  options->add_to(*command);
-  command->callback([options] { explain(*options); });
+  options->add_to(command);
+  command.callback([options] { explain(*options); });
 }
 
 }  // namespace kairos::experiments

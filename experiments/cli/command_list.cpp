@@ -10,7 +10,6 @@
 #include "simulation/registry.hpp"
 #include "simulation/scene_library.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -246,22 +245,21 @@ void print_csv(const std::string& wanted) {
 
 }  // namespace
 
-void add_list_command(CLI::App& app) {
+void add_list_command(Command& app) {
   const auto words = std::make_shared<std::vector<std::string>>();
   const auto csv = std::make_shared<bool>(false);
-  CLI::App* command = app.add_subcommand("list", "What there is to choose from");
+  Command command = app.add_subcommand("list", "What there is to choose from");
   std::vector<std::string_view> names;
   for (const Section& section : sections) {
     names.emplace_back(section.name);
   }
-  command->add_option("what", *words, fmt::format("one of them only: {}", fmt::join(names, ", ")));
-  command->add_flag("--csv", *csv, "as CSV, for programs; of one of them, with all columns");
-  command->callback([words, csv, names] {
+  command.add_option("what", *words, fmt::format("one of them only: {}", fmt::join(names, ", ")));
+  command.add_flag("--csv", *csv, "as CSV, for programs; of one of them, with all columns");
+  command.callback([words, csv, names] {
     std::string wanted = fmt::format("{}", fmt::join(*words, "-"));
     std::replace(wanted.begin(), wanted.end(), ' ', '-');  // impact laws, "impact laws"
     if (!wanted.empty() && std::find(names.begin(), names.end(), wanted) == names.end()) {
-      throw CLI::ValidationError("list",
-                                 fmt::format("'{}' is none of {}", wanted, fmt::join(names, ", ")));
+      refuse("list", fmt::format("'{}' is none of {}", wanted, fmt::join(names, ", ")));
     }
     if (*csv) {
       return print_csv(wanted);

@@ -6,7 +6,6 @@
 #include "core/reading/mesh_file.hpp"
 #include "experiments/cli/commands.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -105,24 +104,24 @@ void MeshReport::run() const {
 
 }  // namespace
 
-void add_mesh_command(CLI::App& app) {
+void add_mesh_command(Command& app) {
   const auto report = std::make_shared<MeshReport>();
-  CLI::App* mesh = app.add_subcommand("mesh", "What is in a mesh file, and what is wrong with it");
-  mesh->add_option("files", report->files, "meshes: .off, .obj or .stl")
-      ->required()
-      ->type_name("MESH...");
-  mesh->add_option("--scale", report->scale, "m per unit of the meshes (0.001: millimetres)")
-      ->type_name("X")
-      ->capture_default_str();
-  mesh->add_option("--most", report->most, "defects, and crossings, that are told one by one")
-      ->type_name("N")
-      ->capture_default_str();
-  mesh->footer(
+  Command mesh = app.add_subcommand("mesh", "What is in a mesh file, and what is wrong with it");
+  mesh.add_option("files", report->files, "meshes: .off, .obj or .stl")
+      .required()
+      .type_name("MESH...");
+  mesh.add_option("--scale", report->scale, "m per unit of the meshes (0.001: millimetres)")
+      .type_name("X")
+      .capture_default_str();
+  mesh.add_option("--most", report->most, "defects, and crossings, that are told one by one")
+      .type_name("N")
+      .capture_default_str();
+  mesh.footer(
       "Defects by file, line and face: open (an edge with one triangle), non-manifold (with more "
       "than two),\ncontrary (neighbours turned the other way), degenerate (corners on a line), "
       "repeated. Crossings: pairs\nthat touch and share no corner, exactly. A mesh without them is "
       "a solid; with them it can be a surface.");
-  mesh->callback([report] { report->run(); });
+  mesh.callback([report] { report->run(); });
 }
 
 }  // namespace kairos::experiments

@@ -4,7 +4,6 @@
 #include "experiments/cli/commands.hpp"
 #include "experiments/meshes/mesh_stream.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <memory>
@@ -43,28 +42,28 @@ void MeshCommand::run(std::int64_t (*answer)(LineBlocks&, const MeshStreamOption
   }
 }
 
-CLI::App* add_mesh_command(CLI::App& app, const std::string& name, const std::string& what,
-                           const std::shared_ptr<MeshCommand>& command) {
-  CLI::App* meshes = app.add_subcommand(name, what);
+Command add_mesh_command(Command& app, const std::string& name, const std::string& what,
+                         const std::shared_ptr<MeshCommand>& command) {
+  Command meshes = app.add_subcommand(name, what);
   meshes
-      ->add_option("queries", command->queries,
-                   "CSV with a header and one query per row; - reads stdin")
-      ->required()
-      ->type_name("POSES.csv");
+      .add_option("queries", command->queries,
+                  "CSV with a header and one query per row; - reads stdin")
+      .required()
+      .type_name("POSES.csv");
   MeshOptions& options = command->options.meshes;
-  meshes->add_option("--a", options.mesh_a, "mesh a of all rows: .off, .obj or .stl")
-      ->type_name("MESH");
-  meshes->add_option("--b", options.mesh_b, "mesh b of all rows")->type_name("MESH");
-  meshes->add_option("--scale", command->scale, "m per unit of the meshes (0.001: millimetres)")
-      ->type_name("X")
-      ->capture_default_str();
-  meshes->add_flag("--solid", options.solid,
-                   "meshes are solids, closed and oriented: what is inside touches");
-  meshes->add_option("--threads", command->options.rows.threads, "how many (default: one per core)")
-      ->type_name("N")
-      ->check(whole_number(0, 1024));
-  meshes->add_flag("--keep-going", command->options.rows.keep_going,
-                   "name bad rows, answer them `invalid`, and go on; the exit status is still 2");
+  meshes.add_option("--a", options.mesh_a, "mesh a of all rows: .off, .obj or .stl")
+      .type_name("MESH");
+  meshes.add_option("--b", options.mesh_b, "mesh b of all rows").type_name("MESH");
+  meshes.add_option("--scale", command->scale, "m per unit of the meshes (0.001: millimetres)")
+      .type_name("X")
+      .capture_default_str();
+  meshes.add_flag("--solid", options.solid,
+                  "meshes are solids, closed and oriented: what is inside touches");
+  meshes.add_option("--threads", command->options.rows.threads, "how many (default: one per core)")
+      .type_name("N")
+      .check(whole_number(0, 1024));
+  meshes.add_flag("--keep-going", command->options.rows.keep_going,
+                  "name bad rows, answer them `invalid`, and go on; the exit status is still 2");
   return meshes;
 }
 
@@ -75,33 +74,33 @@ constexpr const char* columns =
 
 }  // namespace
 
-void add_collide_command(CLI::App& app) {
+void add_collide_command(Command& app) {
   const auto command = std::make_shared<MeshCommand>();
-  CLI::App* collide =
+  Command collide =
       add_mesh_command(app, "collide", "Do meshes touch, and which triangles: exact", command);
-  collide->add_flag("--all", command->options.all, "a line for every pair of triangles that touch");
-  collide->footer(
+  collide.add_flag("--all", command->options.all, "a line for every pair of triangles that touch");
+  collide.footer(
       std::string(columns) +
       "Answer: id,verdict,a_triangle,b_triangle in the same order. The verdict is apart,\n"
       "touching, or with --solid a inside, b inside; without an error, for the numbers of "
       "the file\nas doubles and the rotation of q whatever its length. The first pair "
       "found, or all, ascending.");
-  collide->callback([command] { command->run(answer_collide_queries); });
+  collide.callback([command] { command->run(answer_collide_queries); });
 }
 
-void add_distance_command(CLI::App& app) {
+void add_distance_command(Command& app) {
   const auto command = std::make_shared<MeshCommand>();
-  CLI::App* distance =
+  Command distance =
       add_mesh_command(app, "distance", "How far meshes are apart, between proven bounds", command);
-  CLI::Option* tolerance = distance
-                               ->add_option("--tolerance", command->tolerance,
-                                            "only whether they are at most that far apart (m)")
-                               ->type_name("X");
+  Argument tolerance = distance
+                           .add_option("--tolerance", command->tolerance,
+                                       "only whether they are at most that far apart (m)")
+                           .type_name("X");
   distance
-      ->add_flag("--all", command->options.all,
-                 "with --tolerance: a line for every pair of triangles")
-      ->needs(tolerance);
-  distance->footer(
+      .add_flag("--all", command->options.all,
+                "with --tolerance: a line for every pair of triangles")
+      .needs(tolerance);
+  distance.footer(
       std::string(columns) +
       "Answer: id,verdict,lower,upper,ax,ay,az,bx,by,bz,a_triangle,b_triangle in the same order. "
       "The\n"
@@ -112,7 +111,7 @@ void add_distance_command(CLI::App& app) {
       "no, or\nundecided where it lies between the bounds; with --all as well a line "
       "id,within,a_triangle,\nb_triangle,lower,upper for each pair that is not proven to be "
       "farther apart.");
-  distance->callback([command] { command->run(answer_distance_queries); });
+  distance.callback([command] { command->run(answer_distance_queries); });
 }
 
 }  // namespace kairos::experiments

@@ -5,7 +5,6 @@
 #include "experiments/run_error.hpp"
 #include "simulation/scene_library.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <cstdint>
@@ -39,20 +38,20 @@ struct PhysworldCommand {
 
 }  // namespace
 
-void add_physworld_command(CLI::App& app) {
+void add_physworld_command(Command& app) {
   const auto command = std::make_shared<PhysworldCommand>();
-  CLI::App* physworld = app.add_subcommand(
+  Command physworld = app.add_subcommand(
       "physworld", "Look for the values of physworld.def that the thesis does not give (ch. 8.1)");
-  physworld->add_option("--seed", command->seed, "the same seed, the same world")
-      ->check(seed_number())
-      ->capture_default_str();
-  physworld->add_option("--tries", command->tries, "at most this many worlds")
-      ->check(whole_number(1, 100000000))
-      ->capture_default_str();
-  physworld->add_option("--out", command->out, "the .def file (default: stdout)")
-      ->type_name("FILE")
-      ->check(some_path());
-  physworld->callback([command] { command->run(); });
+  physworld.add_option("--seed", command->seed, "the same seed, the same world")
+      .check(seed_number())
+      .capture_default_str();
+  physworld.add_option("--tries", command->tries, "at most this many worlds")
+      .check(whole_number(1, 100000000))
+      .capture_default_str();
+  physworld.add_option("--out", command->out, "the .def file (default: stdout)")
+      .type_name("FILE")
+      .check(some_path());
+  physworld.callback([command] { command->run(); });
 }
 
 }  // namespace kairos::experiments

@@ -5,7 +5,6 @@
 #include "experiments/output/output_folder.hpp"
 #include "experiments/run_error.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -50,20 +49,20 @@ void PlotCommand::run() const {
 
 }  // namespace
 
-void add_plot_command(CLI::App& app) {
+void add_plot_command(Command& app) {
   const auto command = std::make_shared<PlotCommand>();
-  CLI::App* plot = app.add_subcommand(
+  Command plot = app.add_subcommand(
       "plot", "Draw runs over time, beside each other: height, gap, speed, energy ledger, events");
-  plot->add_option("runs", command->runs, "folders that `kairos run --out` wrote")
-      ->required()
-      ->type_name("RUN...");
-  plot->add_option("--out", command->out,
-                   "the picture: .png, .svg or .pdf (default: plot.png in the first folder)")
-      ->type_name("FILE");
-  plot->add_option("--bodies", command->bodies,
-                   "names of those that are drawn, with commas (default: those that move, up to 6)")
-      ->type_name("A,B");
-  plot->callback([command] { command->run(); });
+  plot.add_option("runs", command->runs, "folders that `kairos run --out` wrote")
+      .required()
+      .type_name("RUN...");
+  plot.add_option("--out", command->out,
+                  "the picture: .png, .svg or .pdf (default: plot.png in the first folder)")
+      .type_name("FILE");
+  plot.add_option("--bodies", command->bodies,
+                  "names of those that are drawn, with commas (default: those that move, up to 6)")
+      .type_name("A,B");
+  plot.callback([command] { command->run(); });
 }
 
 }  // namespace kairos::experiments

@@ -5,7 +5,6 @@
 #include "experiments/random/scene_survey.hpp"
 #include "experiments/run_error.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <chrono>
@@ -99,40 +98,40 @@ void RandomScenesCommand::run() const {
 
 }  // namespace
 
-void add_random_scenes_command(CLI::App& app) {
+void add_random_scenes_command(Command& app) {
   const auto command = std::make_shared<RandomScenesCommand>();
-  CLI::App* random = app.add_subcommand(
+  Command random = app.add_subcommand(
       "random-scenes", "Run random valid scenes, watch for NaN, overlap, hangs; shrink what fails");
-  random->add_option("--count", command->survey.count, "how many")
-      ->check(whole_number(1, 1000000000))
-      ->capture_default_str();
-  random->add_option("--seed", command->survey.seed, "of the scenes")
-      ->check(seed_number())
-      ->capture_default_str();
-  random->add_option("--first", command->survey.first, "number of the first one")
-      ->check(whole_number(0, std::uint64_t{1} << 62))
-      ->capture_default_str();
-  CLI::Option* const shapes = random->add_flag(
+  random.add_option("--count", command->survey.count, "how many")
+      .check(whole_number(1, 1000000000))
+      .capture_default_str();
+  random.add_option("--seed", command->survey.seed, "of the scenes")
+      .check(seed_number())
+      .capture_default_str();
+  random.add_option("--first", command->survey.first, "number of the first one")
+      .check(whole_number(0, std::uint64_t{1} << 62))
+      .capture_default_str();
+  Argument shapes = random.add_flag(
       "--shapes", command->survey.shapes,
       "scenes of all shapes: capsules, cylinders, cones, hulls, compounds, height fields, meshes");
-  CLI::Option* const touching =
-      random->add_flag("--touching", command->survey.touching,
-                       "scenes that start in touch, or come to it: stacks, rows, grooves, corners, "
-                       "inclines, presses, inelastic clusters");
-  shapes->excludes(touching);
+  Argument touching =
+      random.add_flag("--touching", command->survey.touching,
+                      "scenes that start in touch, or come to it: stacks, rows, grooves, corners, "
+                      "inclines, presses, inelastic clusters");
+  shapes.excludes(touching);
   random
-      ->add_option("--threads", command->survey.threads,
-                   "0: one per core; results do not depend on it")
-      ->check(whole_number(0, 1024))
-      ->capture_default_str();
+      .add_option("--threads", command->survey.threads,
+                  "0: one per core; results do not depend on it")
+      .check(whole_number(0, 1024))
+      .capture_default_str();
   random
-      ->add_option("--out", command->out,
-                   "folder: a summary, the scene files of failures, and the finished scenes, from "
-                   "which the same command goes on when it was killed; without it, failures are "
-                   "written here and nothing else is kept")
-      ->type_name("DIR")
-      ->check(some_path());
-  random->callback([command] { command->run(); });
+      .add_option("--out", command->out,
+                  "folder: a summary, the scene files of failures, and the finished scenes, from "
+                  "which the same command goes on when it was killed; without it, failures are "
+                  "written here and nothing else is kept")
+      .type_name("DIR")
+      .check(some_path());
+  random.callback([command] { command->run(); });
 }
 
 }  // namespace kairos::experiments

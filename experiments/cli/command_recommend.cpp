@@ -9,7 +9,6 @@
 #include "experiments/run_error.hpp"
 #include "experiments/tradeoff/recommend.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -145,30 +144,30 @@ void RecommendCommand::run() const {
 
 }  // namespace
 
-void add_recommend_command(CLI::App& app) {
+void add_recommend_command(Command& app) {
   const auto command = std::make_shared<RecommendCommand>();
-  CLI::App* recommend = app.add_subcommand(
+  Command recommend = app.add_subcommand(
       "recommend", "The cheapest method that meets a bound on a scene, with the evidence");
-  command->scene.add_to(*recommend);
-  recommend->add_option("--error", command->error, "largest error of a position at the end, m")
-      ->required()
-      ->type_name("X");
-  recommend->add_option("--penetration", command->penetration, "deepest penetration, m")
-      ->type_name("P");
+  command->scene.add_to(recommend);
+  recommend.add_option("--error", command->error, "largest error of a position at the end, m")
+      .required()
+      .type_name("X");
+  recommend.add_option("--penetration", command->penetration, "deepest penetration, m")
+      .type_name("P");
   recommend
-      ->add_option("--budget", command->budget,
-                   "work for a frame, such as 1ms/frame; counted, 100 ns an operation")
-      ->type_name("T");
-  recommend->add_option("--duration", command->duration, "how long, s or with a unit")
-      ->type_name("T");
-  recommend->add_option("--csv", command->csv, "the evidence as a table, a row per method")
-      ->type_name("FILE");
+      .add_option("--budget", command->budget,
+                  "work for a frame, such as 1ms/frame; counted, 100 ns an operation")
+      .type_name("T");
+  recommend.add_option("--duration", command->duration, "how long, s or with a unit")
+      .type_name("T");
+  recommend.add_option("--csv", command->csv, "the evidence as a table, a row per method")
+      .type_name("FILE");
   recommend
-      ->add_option("--threads", command->threads,
-                   "0: one per core; the answer does not depend on it")
-      ->check(whole_number(0, 1024))
-      ->capture_default_str();
-  recommend->callback([command] { command->run(); });
+      .add_option("--threads", command->threads,
+                  "0: one per core; the answer does not depend on it")
+      .check(whole_number(0, 1024))
+      .capture_default_str();
+  recommend.callback([command] { command->run(); });
 }
 
 }  // namespace kairos::experiments

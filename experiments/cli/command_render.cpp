@@ -6,7 +6,6 @@
 #include "experiments/render/render.hpp"
 #include "experiments/run_error.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <charconv>
@@ -100,25 +99,25 @@ void RenderCommand::run() {
 
 }  // namespace
 
-void add_render_command(CLI::App& app) {
+void add_render_command(Command& app) {
   const auto command = std::make_shared<RenderCommand>();
-  CLI::App* render = app.add_subcommand("render", "Draw a run as PNG frames, by POV-Ray");
-  const auto option = [render](const char* name, std::optional<std::string>& value,
+  Command render = app.add_subcommand("render", "Draw a run as PNG frames, by POV-Ray");
+  const auto option = [&render](const char* name, std::optional<std::string>& value,
                                const char* meaning, const char* type) {
-    render->add_option(name, value, meaning)->type_name(type);
+    render.add_option(name, value, meaning).type_name(type);
   };
   render
-      ->add_option("trajectory", command->trajectory,
-                   "the folder that `kairos run --out` wrote, or its trajectory.csv")
-      ->required()
-      ->type_name("TRAJECTORY");
-  render->add_option("--out", command->out, "folder for frame-00000.png and so on")
-      ->required()
-      ->type_name("DIR")
-      ->check(some_path());
-  render->add_option("--beside", command->beside, "another run, drawn to the right of this one")
-      ->type_name("TRAJECTORY")
-      ->check(some_path());
+      .add_option("trajectory", command->trajectory,
+                  "the folder that `kairos run --out` wrote, or its trajectory.csv")
+      .required()
+      .type_name("TRAJECTORY");
+  render.add_option("--out", command->out, "folder for frame-00000.png and so on")
+      .required()
+      .type_name("DIR")
+      .check(some_path());
+  render.add_option("--beside", command->beside, "another run, drawn to the right of this one")
+      .type_name("TRAJECTORY")
+      .check(some_path());
   option("--from", command->from, "time of the first picture (default: the first frame)", "T");
   option("--to", command->to, "time of the last picture (default: the last frame)", "T");
   option("--every", command->every, "time between pictures (default: each drawn frame)", "T");
@@ -126,12 +125,12 @@ void add_render_command(CLI::App& app) {
   option("--camera", command->camera,
          "px,py,pz,tx,ty,tz[,angle]: where it is, where it looks, degrees (default: sees all)",
          "C");
-  render->add_flag("--no-boxes", command->no_boxes,
-                   "without the boxes that round bodies collide as");
-  render->add_option("--film-rate", command->film_rate, "pictures per second of the film")
-      ->check(finite_number(1.0, 240.0))
-      ->capture_default_str();
-  render->callback([command] { command->run(); });
+  render.add_flag("--no-boxes", command->no_boxes,
+                  "without the boxes that round bodies collide as");
+  render.add_option("--film-rate", command->film_rate, "pictures per second of the film")
+      .check(finite_number(1.0, 240.0))
+      .capture_default_str();
+  render.callback([command] { command->run(); });
 }
 
 }  // namespace kairos::experiments

@@ -8,7 +8,6 @@
 #include "experiments/report/report_entry.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -112,20 +111,20 @@ void ReproduceCommand::run() const {
 
 }  // namespace
 
-void add_reproduce_command(CLI::App& app) {
+void add_reproduce_command(Command& app) {
   const auto command = std::make_shared<ReproduceCommand>();
-  CLI::App* reproduce = app.add_subcommand(
+  Command reproduce = app.add_subcommand(
       "reproduce", "Make the thesis' figures, run all experiments, write the report");
   reproduce
-      ->add_option("--only", command->only,
-                   fmt::format("these only: {}", fmt::join(reproducible_names(), ", ")))
-      ->type_name("NAME");
-  reproduce->add_option("--out", command->out, "the report goes to DIR/report/index.html")
-      ->type_name("DIR")
-      ->check(some_path())
-      ->capture_default_str();
-  command->size.add_to(*reproduce);
-  reproduce->callback([command] { command->run(); });
+      .add_option("--only", command->only,
+                  fmt::format("these only: {}", fmt::join(reproducible_names(), ", ")))
+      .type_name("NAME");
+  reproduce.add_option("--out", command->out, "the report goes to DIR/report/index.html")
+      .type_name("DIR")
+      .check(some_path())
+      .capture_default_str();
+  command->size.add_to(reproduce);
+  reproduce.callback([command] { command->run(); });
 }
 
 }  // namespace kairos::experiments

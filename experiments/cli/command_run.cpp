@@ -14,7 +14,6 @@
 #include "experiments/run_error.hpp"
 #include "simulation/run_metrics.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -154,31 +153,31 @@ RunResult RunCommand::go(const Model& model, const RunChoice& choice, Recorder& 
 
 }  // namespace
 
-void add_run_command(CLI::App& app) {
+void add_run_command(Command& app) {
   const auto command = std::make_shared<RunCommand>();
-  CLI::App* run = app.add_subcommand("run", "Simulate a scene by a method");
-  command->scene.add_to(*run);
-  command->method.add_to(*run);
-  run->add_option("--out", command->out,
-                  "folder for trajectory.csv, events.csv, energy.csv and summary.json")
-      ->type_name("DIR")
-      ->check(some_path());
-  run->add_flag("--force", command->force,
-                "replace what --out holds, even if no earlier run has written it");
-  run->add_option("--save", command->save,
-                  "keep a checkpoint of the run in this file: now and then, and at the end")
-      ->type_name("FILE")
-      ->check(some_path());
-  run->add_option("--save-interval", command->save_interval,
-                  "seconds of real time between checkpoints; 0: after every frame")
-      ->check(finite_number(0.0, 1e9))
-      ->capture_default_str();
-  run->add_option("--resume", command->resume,
-                  "go on from a checkpoint of the same scene and method, to the end or beyond; "
-                  "gives the bytes of a run that was never interrupted")
-      ->type_name("FILE")
-      ->check(some_path());
-  run->callback([command] { command->run(); });
+  Command run = app.add_subcommand("run", "Simulate a scene by a method");
+  command->scene.add_to(run);
+  command->method.add_to(run);
+  run.add_option("--out", command->out,
+                 "folder for trajectory.csv, events.csv, energy.csv and summary.json")
+      .type_name("DIR")
+      .check(some_path());
+  run.add_flag("--force", command->force,
+               "replace what --out holds, even if no earlier run has written it");
+  run.add_option("--save", command->save,
+                 "keep a checkpoint of the run in this file: now and then, and at the end")
+      .type_name("FILE")
+      .check(some_path());
+  run.add_option("--save-interval", command->save_interval,
+                 "seconds of real time between checkpoints; 0: after every frame")
+      .check(finite_number(0.0, 1e9))
+      .capture_default_str();
+  run.add_option("--resume", command->resume,
+                 "go on from a checkpoint of the same scene and method, to the end or beyond; "
+                 "gives the bytes of a run that was never interrupted")
+      .type_name("FILE")
+      .check(some_path());
+  run.callback([command] { command->run(); });
 }
 
 }  // namespace kairos::experiments

@@ -8,7 +8,6 @@
 #include "experiments/sweeps/sweep_shards.hpp"
 #include "simulation/scene_library.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -127,35 +126,35 @@ void SweepCommand::run() const {
 
 }  // namespace
 
-void add_sweep_command(CLI::App& app) {
+void add_sweep_command(Command& app) {
   const auto command = std::make_shared<SweepCommand>();
-  CLI::App* sweep = app.add_subcommand(
+  Command sweep = app.add_subcommand(
       "sweep", "Run a spec of your own: a scene, axes, methods, metrics (experiments/README.md)");
-  sweep->add_option("spec", command->spec, "sweep spec (TOML)")->type_name("SPEC.toml");
+  sweep.add_option("spec", command->spec, "sweep spec (TOML)").type_name("SPEC.toml");
   sweep
-      ->add_option("--out", command->out,
-                   "folder for tables and figures; without it the table of runs goes to stdout")
-      ->type_name("DIR")
-      ->check(some_path());
+      .add_option("--out", command->out,
+                  "folder for tables and figures; without it the table of runs goes to stdout")
+      .type_name("DIR")
+      .check(some_path());
   sweep
-      ->add_option(
+      .add_option(
           "--shard", command->shard,
           "run part I of N alone, into a folder of its own; killed, it goes on where it was")
-      ->type_name("I/N");
+      .type_name("I/N");
   sweep
-      ->add_option(
+      .add_option(
           "--merge", command->merged,
           "make the tables of one machine of all shards: their folders, or a folder of these")
-      ->type_name("DIR...");
+      .type_name("DIR...");
   sweep
-      ->add_option("--progress", command->watched,
-                   "tell how far all shards of the spec are: their folders, or a folder of these")
-      ->type_name("DIR...");
-  sweep->footer(
+      .add_option("--progress", command->watched,
+                  "tell how far all shards of the spec are: their folders, or a folder of these")
+      .type_name("DIR...");
+  sweep.footer(
       "On clusters: share/kairos/clusters has scripts for Slurm arrays and GNU parallel;\n"
       "kairos.sweep(spec, client=...) of the Python package hands shards to Dask.");
-  command->size.add_to(*sweep);
-  sweep->callback([command] { command->run(); });
+  command->size.add_to(sweep);
+  sweep.callback([command] { command->run(); });
 }
 
 }  // namespace kairos::experiments

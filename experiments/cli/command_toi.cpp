@@ -6,7 +6,6 @@
 #include "simulation/registry.hpp"
 #include "simulation/simulate.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <memory>
@@ -67,27 +66,27 @@ void ToiCommand::run() const {
 
 }  // namespace
 
-void add_toi_command(CLI::App& app) {
+void add_toi_command(Command& app) {
   const auto command = std::make_shared<ToiCommand>();
-  CLI::App* toi = app.add_subcommand("toi", "Times of impact of pairs of moving shapes");
-  toi->add_option("queries", command->queries,
-                  "CSV with a header and one query per row; - reads stdin")
-      ->required()
-      ->type_name("QUERIES.csv");
-  toi->add_option("--detector", command->detector,
-                  fmt::format("a detector that locates (default {})", command->detector))
-      ->type_name("D");
-  toi->add_option("--tolerance", command->tolerance,
-                  "m (default: 1e-9 of the smaller extent plus the roundoff of the coordinates)")
-      ->type_name("X");
-  toi->add_option("--threads", command->threads, "how many (default: one per core)")
-      ->type_name("N")
-      ->check(whole_number(0, 1024));
-  toi->add_flag(
+  Command toi = app.add_subcommand("toi", "Times of impact of pairs of moving shapes");
+  toi.add_option("queries", command->queries,
+                 "CSV with a header and one query per row; - reads stdin")
+      .required()
+      .type_name("QUERIES.csv");
+  toi.add_option("--detector", command->detector,
+                 fmt::format("a detector that locates (default {})", command->detector))
+      .type_name("D");
+  toi.add_option("--tolerance", command->tolerance,
+                 "m (default: 1e-9 of the smaller extent plus the roundoff of the coordinates)")
+      .type_name("X");
+  toi.add_option("--threads", command->threads, "how many (default: one per core)")
+      .type_name("N")
+      .check(whole_number(0, 1024));
+  toi.add_flag(
       "--keep-going", command->keep_going,
       "name bad rows, answer them with the status `invalid`, and go on; the exit status is "
       "still 2");
-  toi->footer(
+  toi.footer(
       "Columns, SI units, world frame: id; then for each of a_ and b_: half-extents hx,hy,hz;\n"
       "centre px,py,pz; unit quaternion qw,qx,qy,qz (body to world); velocity vx,vy,vz;\n"
       "acceleration ax,ay,az; angular velocity wx,wy,wz; and duration. Optional a_shape, b_shape:\n"
@@ -99,7 +98,7 @@ void add_toi_command(CLI::App& app) {
       "unit of it in hx,\n"
       "compound (a_parts: \"shape hx hy hz px py pz qw qx qy qz; ...\").\n"
       "Answer: id,status,t_lo,t_hi,gap,nx,ny,nz,evaluations in the same order.");
-  toi->callback([command] { command->run(); });
+  toi.callback([command] { command->run(); });
 }
 
 }  // namespace kairos::experiments

@@ -6,7 +6,6 @@
 #include "experiments/sweeps/experiment.hpp"
 #include "experiments/tradeoff/tradeoff_experiment.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <cmath>
@@ -81,26 +80,24 @@ void TradeoffCommand::run() const {
 
 }  // namespace
 
-void add_tradeoff_command(CLI::App& app) {
+void add_tradeoff_command(Command& app) {
   const auto command = std::make_shared<TradeoffCommand>();
-  CLI::App* tradeoff = app.add_subcommand(
+  Command tradeoff = app.add_subcommand(
       "tradeoff", "What accuracy costs on a scene: every sensible method, its errors and its work");
-  command->scene.add_to(*tradeoff);
-  tradeoff->add_option("--duration", command->duration, "how long, s or with a unit")
-      ->type_name("T");
-  tradeoff->add_option("--out", command->out, "folder for tables, measured times and figures")
-      ->type_name("DIR")
-      ->check(some_path());
-  tradeoff->add_flag("--force", command->force,
-                     "replace files in that folder that no experiment has written");
-  tradeoff->add_option("--rounds", command->rounds, "with --out: how often each method is timed")
-      ->check(whole_number(1, 100))
-      ->capture_default_str();
-  tradeoff
-      ->add_option("--threads", command->threads, "0: one per core; results do not depend on it")
-      ->check(whole_number(0, 1024))
-      ->capture_default_str();
-  tradeoff->callback([command] { command->run(); });
+  command->scene.add_to(tradeoff);
+  tradeoff.add_option("--duration", command->duration, "how long, s or with a unit").type_name("T");
+  tradeoff.add_option("--out", command->out, "folder for tables, measured times and figures")
+      .type_name("DIR")
+      .check(some_path());
+  tradeoff.add_flag("--force", command->force,
+                    "replace files in that folder that no experiment has written");
+  tradeoff.add_option("--rounds", command->rounds, "with --out: how often each method is timed")
+      .check(whole_number(1, 100))
+      .capture_default_str();
+  tradeoff.add_option("--threads", command->threads, "0: one per core; results do not depend on it")
+      .check(whole_number(0, 1024))
+      .capture_default_str();
+  tradeoff.callback([command] { command->run(); });
 }
 
 }  // namespace kairos::experiments

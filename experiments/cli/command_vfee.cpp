@@ -3,7 +3,6 @@
 #include "experiments/cli/commands.hpp"
 #include "experiments/vfee/vfee_stream.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -43,25 +42,25 @@ void VfeeCommand::run() const {
 
 }  // namespace
 
-void add_vfee_command(CLI::App& app) {
+void add_vfee_command(Command& app) {
   const auto command = std::make_shared<VfeeCommand>();
-  CLI::App* vfee = app.add_subcommand(
+  Command vfee = app.add_subcommand(
       "vfee", "Exact times at which vertices meet faces, and edges edges, on straight lines");
-  vfee->add_option("queries", command->queries, "CSV, one query per row; - reads stdin")
-      ->required()
-      ->type_name("QUERIES.csv");
-  vfee->add_option("--kind", command->kind,
-                   "vf or ee: of rows of rational numbers (default: as their folder is called, "
-                   "vertex-face or edge-edge)")
-      ->check(CLI::IsMember({"vf", "ee"}))
-      ->type_name("K");
-  vfee->add_option("--threads", command->options.threads, "how many (default: one per core)")
-      ->type_name("N")
-      ->check(whole_number(0, 1024));
-  vfee->add_flag("--keep-going", command->options.keep_going,
-                 "name bad rows, answer them with the stage `invalid`, and go on; the exit status "
-                 "is still 2");
-  vfee->footer(
+  vfee.add_option("queries", command->queries, "CSV, one query per row; - reads stdin")
+      .required()
+      .type_name("QUERIES.csv");
+  vfee.add_option("--kind", command->kind,
+                  "vf or ee: of rows of rational numbers (default: as their folder is called, "
+                  "vertex-face or edge-edge)")
+      .one_of({"vf", "ee"})
+      .type_name("K");
+  vfee.add_option("--threads", command->options.threads, "how many (default: one per core)")
+      .type_name("N")
+      .check(whole_number(0, 1024));
+  vfee.add_flag("--keep-going", command->options.keep_going,
+                "name bad rows, answer them with the stage `invalid`, and go on; the exit status "
+                "is still 2");
+  vfee.footer(
       "Columns: id; kind, vf or ee; points 0 to 3 at the start, s0x,s0y,s0z to s3x,s3y,s3z, and "
       "at\n"
       "the end, e0x to e3z, any unit; optional separation: they meet where their distance is at\n"
@@ -76,7 +75,7 @@ void add_vfee_command(CLI::App& app) {
       "numbers:\n"
       "x, y, z as numerator,denominator, and 0 or 1: whether they meet. Answered with the line of\n"
       "the first row for an id and the truth of the file in a last column; misses are counted.");
-  vfee->callback([command] { command->run(); });
+  vfee.callback([command] { command->run(); });
 }
 
 }  // namespace kairos::experiments

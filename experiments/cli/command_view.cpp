@@ -12,7 +12,6 @@
 #include "simulation/registry.hpp"
 #include "simulation/view/view_page.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -58,7 +57,6 @@ RunChoice other_choice(RunChoice choice, const std::string& text) {
 struct ViewCommand {
   SceneOptions scene;
   RunOptions method;
-  const CLI::Option* named = nullptr;
   std::string beside;
   std::string out;
 
@@ -82,7 +80,7 @@ ViewRun simulated(const Model& model, const RunChoice& choice) {
 /// A run was made with options of its own.
 void ViewCommand::refuse_options() const {
   if (!scene.overrides().empty() || identity_of(method.choice()) != identity_of(RunChoice{})) {
-    throw InputError(named->as<std::string>(), 0, "",
+    throw InputError(scene.name(), 0, "",
                      "is a run that was made already; --set and the options of a method need a "
                      "SCENE");
   }
@@ -90,10 +88,10 @@ void ViewCommand::refuse_options() const {
 
 std::vector<ViewRun> ViewCommand::runs() const {
   std::vector<ViewRun> runs;
-  const bool from_files = is_run(named->as<std::string>());
+  const bool from_files = is_run(scene.name());
   if (from_files) {
     refuse_options();
-    runs.push_back(read_run(named->as<std::string>()));
+    runs.push_back(read_run(scene.name()));
     if (!beside.empty() && !is_run(beside)) {
       throw InputError("", 0, "--beside",
                        fmt::format("'{}' is no run; beside a run goes another run's folder, a "
@@ -140,22 +138,21 @@ void ViewCommand::run() const {
 
 }  // namespace
 
-void add_view_command(CLI::App& app) {
+void add_view_command(Command& app) {
   const auto command = std::make_shared<ViewCommand>();
-  CLI::App* view = app.add_subcommand(
+  Command view = app.add_subcommand(
       "view", "Make a page that shows a run: one HTML file, for any browser, without a network");
-  command->scene.add_to(*view);
-  CLI::Option* named = view->get_option("scene");
-  named->description("a scene (file or shipped name) to run, or the folder of a run");
-  command->named = named;
-  command->method.add_to(*view);
-  view->add_option("--beside", command->beside,
-                   "shown in step beside it: `thesis`, a scheme, OPTION=VALUE (several with "
-                   "commas), or the folder of another run")
-      ->type_name("METHOD");
-  view->add_option("--out", command->out, "the page (default: the scene's name, .html)")
-      ->type_name("FILE.html");
-  view->callback([command] { command->run(); });
+  command->scene.add_to(view);
+  view.get_option("scene").description(
+      "a scene (file or shipped name) to run, or the folder of a run");
+  command->method.add_to(view);
+  view.add_option("--beside", command->beside,
+                  "shown in step beside it: `thesis`, a scheme, OPTION=VALUE (several with "
+                  "commas), or the folder of another run")
+      .type_name("METHOD");
+  view.add_option("--out", command->out, "the page (default: the scene's name, .html)")
+      .type_name("FILE.html");
+  view.callback([command] { command->run(); });
 }
 
 }  // namespace kairos::experiments

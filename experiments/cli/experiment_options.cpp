@@ -3,19 +3,18 @@
 #include "experiments/cli/checks.hpp"
 #include "experiments/programs/run_experiment.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 namespace kairos::experiments {
 
-void SizeOptions::add_to(CLI::App& command) {
-  CLI::Option* quick_flag =
+void SizeOptions::add_to(Command& command) {
+  Argument quick_flag =
       command.add_flag("--quick", quick, "the small size of the spec (the default)");
-  command.add_flag("--full", full, "the full size")->excludes(quick_flag);
+  command.add_flag("--full", full, "the full size").excludes(quick_flag);
   command.add_flag("--force", force, "replace files that no earlier experiment has written");
   command.add_option("--threads", threads, "0: one per core; results do not depend on it")
-      ->check(whole_number(0, 1024))
-      ->capture_default_str();
+      .check(whole_number(0, 1024))
+      .capture_default_str();
 }
 
 ExperimentOutcome run_and_tell(const ExperimentSpec& spec, const ExperimentOptions& options,

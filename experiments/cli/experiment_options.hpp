@@ -1,12 +1,9 @@
 #pragma once
 
+#include "experiments/cli/command_line.hpp"
 #include "experiments/sweeps/experiment.hpp"
 
 #include <string>
-
-namespace CLI {
-class App;
-}
 
 namespace kairos::experiments {
 
@@ -17,7 +14,7 @@ struct SizeOptions {
   std::size_t threads = 0;
   bool force = false;  ///< whatever the folder holds is replaced
 
-  void add_to(CLI::App& command);
+  void add_to(Command& command);
   [[nodiscard]] Size size() const { return full ? Size::full : Size::quick; }
 };
 

@@ -6,7 +6,6 @@
 #include "simulation/registry.hpp"
 #include "simulation/scene_library.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <span>
@@ -74,17 +73,15 @@ Override parse_setting(const std::string& text) {
 
 }  // namespace
 
-void SceneOptions::add_to(CLI::App& command) {
+void SceneOptions::add_to(Command& command) {
   command.add_option("scene", scene_, "a scene file, or the name of a shipped scene")
-      ->required()
-      ->type_name("SCENE");
+      .required()
+      .type_name("SCENE");
   command
       .add_option("--set", settings_,
                   "replace a value of the scene, such as body.ball.radius=0.2; repeatable")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->take_all()
-      ->trigger_on_parse(false);
+      .type_name("KEY=VALUE")
+      .one_each_time();
 }
 
 Scene SceneOptions::scene() const { return read_scene(find_scene(scene_), overrides()); }
@@ -118,14 +115,14 @@ std::string SceneOptions::arguments() const {
   return text;
 }
 
-void RunOptions::add_to(CLI::App& command) {
+void RunOptions::add_to(Command& command) {
   for (const Option& option : options()) {
     const std::string flag = "--" + std::string(option.flag);
     if (option.kind == OptionKind::flag) {
       command.add_flag(flag, flags_[option.name], help_of(option));
     } else {
       command.add_option(flag, texts_[option.name], help_of(option))
-          ->type_name(std::string(placeholder(option.kind)));
+          .type_name(std::string(placeholder(option.kind)));
     }
   }
   command.add_flag("--thesis", thesis_,

@@ -2,6 +2,7 @@
 
 #include "core/reading/scene_reader.hpp"
 #include "core/scene.hpp"
+#include "experiments/cli/command_line.hpp"
 #include "simulation/simulate.hpp"
 
 #include <map>
@@ -10,16 +11,14 @@
 #include <string_view>
 #include <vector>
 
-namespace CLI {
-class App;
-}
-
 namespace kairos::experiments {
 
 /// The options that name a scene: shared by every command that takes one.
 class SceneOptions {
  public:
-  void add_to(CLI::App& command);
+  void add_to(Command& command);
+  /// The scene as it was named.
+  [[nodiscard]] const std::string& name() const { return scene_; }
   /// Reads the scene. Throws `InputError`.
   [[nodiscard]] Scene scene() const;
   /// What --set replaces. Throws `InputError`.
@@ -38,7 +37,7 @@ class SceneOptions {
 /// The options that name a method: shared by every command that runs one.
 class RunOptions {
  public:
-  void add_to(CLI::App& command);
+  void add_to(Command& command);
   /// Throws `InputError` where a value makes no sense; names are looked up by `simulate`.
   [[nodiscard]] RunChoice choice() const;
 

@@ -131,12 +131,15 @@ def frame_times(data, figures):
                                           (3e-16, 1e-11), 0.3)
     for method in methods:
         x, y = points(pick(rows, method=method), "frame", "energy_gain")
+        look = style.look(method, methods)
+        if max(y) < -1e-9:
+            look["label"] += ": lost"
         for part in (panel, roundoff):
-            part.plot(x, [max(abs(value), 1e-15) for value in y], **style.look(method, methods))
+            part.plot(x, [max(abs(value), 1e-15) for value in y], **look)
     x, y = points(pick(rows, method=methods[0]), "frame", "predicted")
     panel.plot(x, y, **style.PREDICTION, label="predicted: (n−1) G²h²/(2m)")
     panel.set_xscale("log")
     roundoff.set_xlabel(data.label("frame-time", "frame"))
-    panel.set_ylabel("|energy gained| / J")
+    panel.set_ylabel("energy gained, or lost / J")
     style.legend_below(figure, [panel], columns=3)
     figures.save(figure, "energy_by_frame_time", data.entry("caption:frame-time"))

@@ -156,3 +156,39 @@ TEST_CASE("27: a small solid inside a larger one", "[parts]") {
   CHECK_FALSE(
       certified->overlaps(solid(large), at(Vector3::Zero()), solid(small), at(Vector3::Zero())));
 }
+
+TEST_CASE("every triangle is asked: a ball, and the corner of a mesh, on the middle of each",
+          "[parts][mutation]") {
+  // Nothing else is near there, so that no neighbour answers for a leaf or a child that is dropped.
+  const MeshData sphere = icosphere_mesh(1);
+  const Shape target = Mesh{mesh_in_place(sphere, Kind::surface)};
+  for (std::size_t i = 0; i < sphere.triangles.size(); ++i) {
+    const Triangle& t = sphere.triangles[i];
+    const Vector3 &x = sphere.vertices[t[0]], &y = sphere.vertices[t[1]],
+                  &z = sphere.vertices[t[2]];
+    const Vector3 middle = (x + y + z) / 3.0;
+    const Vector3 n = (y - x).cross(z - x).normalized();
+    const Vector3 across = (y - x).normalized();
+    const Vector3 along = n.cross(across);
+    const MeshData corner{{Vector3::Zero(), 0.2 * n + 0.1 * across, 0.2 * n + 0.1 * along,
+                           0.2 * n - 0.1 * across - 0.1 * along},
+                          {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}};
+    const std::pair<Shape, double> strikers[] = {{Sphere{0.02}, 0.02},
+                                                 {Mesh{mesh_in_place(corner, Kind::surface)}, 0.0}};
+    for (const auto& [striker, reach] : strikers) {
+      const Motion falling = moving(middle + (0.5 + reach) * n, -n, Vector3::Zero());
+      for (const TimeOfImpact& toi :
+           {ask(target, still(), striker, falling), ask(striker, falling, target, still())}) {
+        CAPTURE(i, reach, toi.t_lo, toi.t_hi);
+        REQUIRE(toi.status == ToiStatus::impact);
+        CHECK(std::abs(toi.t_lo - 0.5) < 1e-12);
+        CHECK(std::abs(toi.t_hi - 0.5) < 1e-12);
+      }
+      const Pose inside = at(middle + (reach - 1e-6) * n);
+      const Pose outside = at(middle + (reach + 1e-6) * n);
+      CAPTURE(i, reach);
+      CHECK(certified->overlaps(target, at(Vector3::Zero()), striker, inside));
+      CHECK_FALSE(certified->overlaps(target, at(Vector3::Zero()), striker, outside));
+    }
+  }
+}

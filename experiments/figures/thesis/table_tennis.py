@@ -1,6 +1,7 @@
 """Rallies by every method: passes, penetrating frames, the nudge, and the speed that 13.8 tells."""
 
 import matplotlib.pyplot as plt
+from matplotlib.ticker import NullLocator
 
 import style
 from data import pick
@@ -68,14 +69,24 @@ def draw_nudge(panel, rows):
 
 def draw_speeds(panel, rows):
     rows = [row for row in rows if row["frames"] and row["truth"] is not None]
-    truth = [max(row["truth"], 1e-3) for row in rows]
+    # A logarithmic axis has no 0: what stands still is told left of it.
+    still = [row for row in rows if row["truth"] <= 0.0]
+    rows = [row for row in rows if row["truth"] > 0.0]
+    for row in still:
+        panel.errorbar(4e-3, row["told"], yerr=[[row["told"] - row["q1"]], [row["q3"] - row["told"]]],
+                       color=style.COLOURS[0], marker="s", markerfacecolor="white", linestyle="none",
+                       label="told of a bat that stands still")
+    truth = [row["truth"] for row in rows]
     panel.fill_between(truth, [row["q1"] for row in rows], [row["q3"] for row in rows],
                        color=style.COLOURS[0], alpha=0.15, linewidth=0)
     panel.plot(truth, [row["told"] for row in rows], color=style.COLOURS[0], marker="o",
                markerfacecolor="white", label="told by 13.8 (median, quartiles)")
-    panel.plot([1e-3, 10], [1e-3, 10], label="the truth", **style.PREDICTION)
+    panel.plot([1e-2, 10], [1e-2, 10], label="the truth", **style.PREDICTION)
     panel.set_xscale("log")
     panel.set_yscale("log")
+    panel.set_xlim(2.5e-3, 14)
+    panel.set_xticks([4e-3, 1e-2, 1e-1, 1, 10], ["0", "0.01", "0.1", "1", "10"])
+    panel.xaxis.set_minor_locator(NullLocator())
     panel.set_xlabel("true speed / (m/s)")
     panel.set_ylabel("speed told / (m/s)")
-    panel.legend(loc="upper left")
+    panel.legend(loc="lower right")
