@@ -1,6 +1,7 @@
 #include "core/schemes/frame/frame_motions.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -56,6 +57,7 @@ void FrameMotions::begin_step(Mover& mover, Instant t) {
 }
 
 bool FrameMotions::step(Mover& mover, double& done, double until) {
+  assert(done < until);
   const StepResult result =
       mover.stepper->step(mover.island, run_.time + done, until - done, mover.states);
   ++run_.cost.steps;
@@ -74,6 +76,7 @@ bool FrameMotions::step(Mover& mover, double& done, double until) {
 }
 
 void FrameMotions::advance(double h) {
+  assert(h >= 0.0);
   for (Mover& mover : movers_) {
     if (mover.carried) {
       continue;
@@ -146,6 +149,7 @@ void FrameMotions::carry(BodyIndex i, const BodyState& state) {
 // --- Proposals ---------------------------------------------------------------------------------
 
 void FrameMotions::propose(double h) {
+  assert(h > 0.0);
   proposed_ = h;
   for (Mover& mover : movers_) {
     if (mover.carried) {
@@ -190,6 +194,7 @@ void FrameMotions::fly(Mover& mover, double from, double to) {
     mover.stepper->dense_output(mover.motions);
     mover.projections.emplace_back(done, mover.projection);
     for (std::size_t k = 0; k < mover.motions.size(); ++k) {
+      assert(mover.motions[k].start <= run_.time + done);
       paths_[mover.island.bodies[k]].push_back(mover.motions[k]);
     }
   }
@@ -219,6 +224,7 @@ double FrameMotions::common_stretch(BodyIndex a, BodyIndex b, double s, double u
 }
 
 void FrameMotions::accept(double s) {
+  assert(s >= 0.0 && s <= proposed_);
   const bool whole = s >= proposed_;
   for (Mover& mover : movers_) {
     if (mover.carried) {
@@ -235,6 +241,7 @@ void FrameMotions::accept(double s) {
 }
 
 void FrameMotions::cut(BodyIndex i, double s) {
+  assert(s >= 0.0 && s <= proposed_);
   book_path(mover_of(i), s);
   for (const BodyIndex k : mover_of(i).island.bodies) {
     std::vector<Motion>& path = paths_[k];
@@ -247,6 +254,7 @@ void FrameMotions::cut(BodyIndex i, double s) {
 
 void FrameMotions::fly_on(BodyIndex i, double s, const State& meeting) {
   Mover& mover = mover_of(i);
+  assert(mover.booked_until >= s);  // else the jump would be taken for work along the way
   for (std::size_t k = 0; k < mover.states.size(); ++k) {
     mover.states[k] = meeting[mover.island.bodies[k]];
   }
@@ -329,6 +337,7 @@ void FrameMotions::book_path(Mover& mover, double until) {
     if (!(end > from)) {
       end = until;  // what rounding left between the last motion and `until`
     }
+    assert(end > from && end <= until);
     const bool at_end = end >= proposed_;
     // Only the stepper's last step can be replayed, and only from where it began.
     const bool replayable = path_motion(first, from).start == paths_[first].back().start &&
