@@ -8,6 +8,7 @@
 #include "ccd/rounding/roundoff.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -123,6 +124,7 @@ Ending advance_from(PairLooks& pair, BoundsAhead& bounds, const Effort& effort, 
     if (next >= std::min(duration, repeats)) {
       return {ToiStatus::separated, at, duration};
     }
+    assert(next >= at.t());
     const double piece = bounds.until() - at.t();
     if (next > at.t()) {
       last_step = next - at.t();
@@ -170,6 +172,7 @@ TimeOfImpact run(PairKind kind, const PairMotion& motion, const MovingShape& a,
     effort.tolerance = default_tolerance(a, b, window);
   }
   const Ending ending = advance(pair, effort, clear);
+  assert(ending.t_hi >= ending.at.t() && ending.t_hi <= pair.duration());
   answer.evaluations = pair.count();
   if (ending.status != ToiStatus::separated) {
     answer.status = ending.status;

@@ -1,6 +1,7 @@
 #include "ccd/bounds_ahead.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 namespace kairos::ccd {
 namespace {
@@ -12,7 +13,9 @@ constexpr double steps_too_long = 16.0;
 }  // namespace
 
 void BoundsAhead::begin(double t, double piece) {
+  assert(t >= 0.0 && piece >= 0.0);
   turn_ = motion_.bounds(t, piece);
+  assert(turn_.until >= t);
   made_at_ = t;
   used_again_ = false;
 }

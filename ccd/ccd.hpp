@@ -4,6 +4,7 @@
 // instant, vertices and edges on straight lines. `#include <kairos/ccd.hpp>`; see ccd/README.md.
 #include "ccd/all_pairs.hpp"
 #include "ccd/bisection.hpp"
+#include "ccd/box_batch.hpp"
 #include "ccd/certified.hpp"
 #include "ccd/conservative_advancement.hpp"
 #include "ccd/contact_patch.hpp"
@@ -17,3 +18,4 @@
 #include "ccd/step_ends.hpp"
 #include "ccd/sweep_and_prune.hpp"
 #include "ccd/swept_box.hpp"
+#include "ccd/toi_batch.hpp"

@@ -9,6 +9,7 @@
 #include "ccd/rounding/roundoff.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 namespace kairos::ccd {
 namespace {
@@ -94,6 +95,7 @@ void tell_contact(PairLooks& pair, const MovingShape& a, const MovingShape& b, c
       at = pair.look(answer.t_lo);
     }
   }
+  assert(answer.t_lo >= 0.0 && answer.t_lo <= answer.t_hi);
   answer.evaluations = pair.count();
   answer.normal = at.witness.n;
   answer.gap = std::max(0.0, at.gap() - at.k.error);

@@ -6,6 +6,7 @@
 #include "ccd/separation_function.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace kairos::ccd {
@@ -52,6 +53,7 @@ double first_look(const PairMotion& motion, const Look& at, double length, doubl
 /// They are apart at both ends, or nearly: a time of a proven overlap where the gap is least
 /// between.
 std::optional<double> overlap_between(PairLooks& pair, double low, double high) {
+  assert(low <= high);
   for (int i = 0; i < most_halvings; ++i) {
     const double middle = low + 0.5 * (high - low);
     if (!(middle > low && middle < high)) {

@@ -3,10 +3,12 @@
 #include "ccd/separation_function.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 namespace kairos::ccd {
 
 Look PairLooks::look(double t) {
+  assert(t >= 0.0 && t <= duration());
   Look at;
   motion_.evaluate(t, at.k);
   at.witness = find_witness(kind_, motion_, at.k);
@@ -28,6 +30,7 @@ double PairLooks::safe_step(const Kinematics& k, const Witness& witness, const T
                             double horizon) const {
   const SeparationFunction moving(motion_, k, bounds, witness);
   double step = moving.advance(horizon);
+  assert(step >= 0.0 && step <= horizon);
   const bool turns = motion_.turns_a() || motion_.turns_b();
   if (!turns || step >= horizon) {
     return step;

@@ -4,6 +4,7 @@
 #include "ccd/conservative_advancement.hpp"
 #include "ccd/sat.hpp"
 #include "ccd/step_ends.hpp"
+#include "ccd/toi_batch.hpp"
 #include "experiments/accuracy/random_query.hpp"
 #include "tests/catch.hpp"
 
@@ -29,6 +30,36 @@ const Vector3 zero = Vector3::Zero();
 const double inf = std::numeric_limits<double>::infinity();
 
 }  // namespace
+
+TEST_CASE("a batch of times of impact is what each gives by itself, in order", "[ccd][batch]") {
+  const auto certified = ccd::make_certified();
+  Random random(2);
+  std::vector<Query> kept;
+  for (int i = 0; i < 400; ++i) {
+    const ShapeKinds kinds = shape_kinds[random.below(5)];
+    kept.push_back({random_shape(random, kinds.a, 1.0), random_shape(random, kinds.b, 1.0),
+                    moving(pose(random.vector(2.0), random.orientation()), random.vector(3.0)),
+                    moving(pose(random.vector(2.0), random.orientation()), zero), 1.0});
+  }
+  std::vector<ccd::ToiQuery> queries;
+  for (const Query& q : kept) {
+    queries.push_back({{q.a, q.motion_a}, {q.b, q.motion_b}, {Instant{}, 1.0}});
+  }
+  std::vector<TimeOfImpact> answers(queries.size());
+  ccd::toi_batch(*certified, queries, answers);
+  int impacts = 0;
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    const ccd::ToiQuery& q = queries[i];
+    const TimeOfImpact one = certified->time_of_impact(q.a, q.b, q.window, 0.0);
+    CHECK(answers[i].status == one.status);
+    CHECK(answers[i].t_lo == one.t_lo);
+    CHECK(answers[i].t_hi == one.t_hi);
+    impacts += one.status == ToiStatus::impact ? 1 : 0;
+  }
+  CHECK(impacts > 10);  // otherwise the batch shows nothing
+  CHECK_THROWS_AS(ccd::toi_batch(*certified, queries, std::span(answers).first(3)),
+                  std::invalid_argument);
+}
 
 TEST_CASE("detectors agree with long double on who overlaps", "[ccd][contract]") {
   for (const auto& detector : detectors()) {

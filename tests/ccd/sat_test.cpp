@@ -1,4 +1,5 @@
 // Two boxes at one instant: all ways to ask agree, and what is proven is true.
+#include "ccd/box_batch.hpp"
 #include "ccd/relative_boxes.hpp"
 #include "ccd/sine_cosine.hpp"
 #include "experiments/accuracy/random_query.hpp"
@@ -103,6 +104,53 @@ TEST_CASE("a cached axis separates as long as it does, and is replaced when it d
     ++separated;
   }
   CHECK(separated > 200);
+}
+
+TEST_CASE("many pairs of boxes at once give the bits of one", "[ccd][sat][batch]") {
+  Random random(14);
+  std::vector<ccd::RelativeBoxes> pairs;
+  for (int i = 0; i < 20'001; ++i) {  // no multiple of what is looked at at once
+    ccd::RelativeBoxes boxes = random_pair(random, i % 2 == 0).relative;
+    if (i % 7 == 0) {  // exactly parallel, a face on a face, or a box that is none
+      boxes.axes_A.setIdentity();
+      boxes.d_A[0] = boxes.half_a[0] + boxes.half_b[0];
+    }
+    if (i % 11 == 0) {
+      boxes.d_A.setZero();
+      boxes.half_b.setZero();
+    }
+    pairs.push_back(boxes);
+  }
+  ccd::BoxBatch batch;
+  batch.push_back(pairs.back());
+  batch.clear();
+  for (const ccd::RelativeBoxes& boxes : pairs) {
+    batch.push_back(boxes);
+  }
+  std::vector<ccd::Verdict> verdicts(pairs.size());
+  std::vector<ccd::AxisSeparation> separations(pairs.size());
+  std::vector<double> errors(pairs.size());
+  ccd::classify_batch(batch, verdicts);
+  ccd::greatest_separation_batch(batch, separations, errors);
+  int verdict[3] = {0, 0, 0};
+  int edges = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const ccd::AxisSeparation one = ccd::greatest_separation(pairs[i]);
+    const ccd::AxisSeparation& of_many = separations[i];
+    if (verdicts[i] != ccd::classify(pairs[i]) || of_many.axis != one.axis ||
+        of_many.value != one.value || of_many.length != one.length || of_many.sign != one.sign) {
+      FAIL_CHECK("pair " << i << ": axis " << of_many.axis << " " << of_many.value << ", not "
+                         << one.axis << " " << one.value);
+    }
+    CHECK(errors[i] == Approx(pairs[i].error()).epsilon(8 * u));  // another order of the same sum
+    ++verdict[static_cast<int>(verdicts[i])];
+    edges += one.axis >= 6 ? 1 : 0;
+  }
+  CHECK(verdict[0] > 1000);  // otherwise the pairs show nothing
+  CHECK(verdict[1] > 1000);
+  CHECK(verdict[2] > 1000);
+  CHECK(edges > 1000);
+  CHECK_THROWS_AS(ccd::classify_batch(batch, std::span(verdicts).first(3)), std::invalid_argument);
 }
 
 TEST_CASE("sine and cosine are right to 3 u", "[ccd]") {

@@ -1,6 +1,7 @@
 #include "core/schemes/frame/frame_motions.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -23,11 +24,9 @@ FrameMotions::FrameMotions(FrameRun& run, const Method& method)
     }
   }
   for (std::size_t k = 0; k < run.model.islands().size(); ++k) {
-    Mover mover{.island = run.model.islands()[k], .stepper = method.stepper(run.model, k)};
-    mover.exact = mover.stepper->info().order == 0;
-    mover.states.resize(mover.island.bodies.size());
-    mover.motions.resize(mover.island.bodies.size());
-    gather(mover);
+    Mover mover(run.model, method, k);
+    mover.motions.resize(mover.states.size());
+    mover.gather(run.bodies);
     mover.stepper->start(mover.island, run.time, mover.states);
     movers_.push_back(std::move(mover));
   }
@@ -35,12 +34,6 @@ FrameMotions::FrameMotions(FrameRun& run, const Method& method)
 }
 
 // --- Steps -------------------------------------------------------------------------------------
-
-void FrameMotions::gather(Mover& mover) const {
-  for (std::size_t k = 0; k < mover.states.size(); ++k) {
-    mover.states[k] = run_.bodies[mover.island.bodies[k]];
-  }
-}
 
 void FrameMotions::begin_step(Mover& mover, Instant t) {
   for (std::size_t k = 0; k < mover.island.bodies.size(); ++k) {
@@ -56,6 +49,7 @@ void FrameMotions::begin_step(Mover& mover, Instant t) {
 }
 
 bool FrameMotions::step(Mover& mover, double& done, double until) {
+  assert(done < until);
   const StepResult result =
       mover.stepper->step(mover.island, run_.time + done, until - done, mover.states);
   ++run_.cost.steps;
@@ -74,11 +68,12 @@ bool FrameMotions::step(Mover& mover, double& done, double until) {
 }
 
 void FrameMotions::advance(double h) {
+  assert(h >= 0.0);
   for (Mover& mover : movers_) {
     if (mover.carried) {
       continue;
     }
-    gather(mover);
+    mover.gather(run_.bodies);
     begin_step(mover, run_.time);
     const bool dense = run_.wants_motions || !mover.island.forces.empty();
     for (double done = 0.0; done < h;) {
@@ -146,12 +141,13 @@ void FrameMotions::carry(BodyIndex i, const BodyState& state) {
 // --- Proposals ---------------------------------------------------------------------------------
 
 void FrameMotions::propose(double h) {
+  assert(h > 0.0);
   proposed_ = h;
   for (Mover& mover : movers_) {
     if (mover.carried) {
       continue;
     }
-    gather(mover);
+    mover.gather(run_.bodies);
     mover.booked = mover.states;
     mover.booked_until = 0.0;
     mover.bent_at = 0.0;
@@ -190,6 +186,7 @@ void FrameMotions::fly(Mover& mover, double from, double to) {
     mover.stepper->dense_output(mover.motions);
     mover.projections.emplace_back(done, mover.projection);
     for (std::size_t k = 0; k < mover.motions.size(); ++k) {
+      assert(mover.motions[k].start <= run_.time + done);
       paths_[mover.island.bodies[k]].push_back(mover.motions[k]);
     }
   }
@@ -219,6 +216,7 @@ double FrameMotions::common_stretch(BodyIndex a, BodyIndex b, double s, double u
 }
 
 void FrameMotions::accept(double s) {
+  assert(s >= 0.0 && s <= proposed_);
   const bool whole = s >= proposed_;
   for (Mover& mover : movers_) {
     if (mover.carried) {
@@ -235,6 +233,7 @@ void FrameMotions::accept(double s) {
 }
 
 void FrameMotions::cut(BodyIndex i, double s) {
+  assert(s >= 0.0 && s <= proposed_);
   book_path(mover_of(i), s);
   for (const BodyIndex k : mover_of(i).island.bodies) {
     std::vector<Motion>& path = paths_[k];
@@ -247,9 +246,8 @@ void FrameMotions::cut(BodyIndex i, double s) {
 
 void FrameMotions::fly_on(BodyIndex i, double s, const State& meeting) {
   Mover& mover = mover_of(i);
-  for (std::size_t k = 0; k < mover.states.size(); ++k) {
-    mover.states[k] = meeting[mover.island.bodies[k]];
-  }
+  assert(mover.booked_until >= s);  // else the jump would be taken for work along the way
+  mover.gather(meeting);
   mover.booked = mover.states;
   mover.booked_until = s;
   mover.bent_at = s;
@@ -273,10 +271,8 @@ void FrameMotions::book_step(Mover& mover, const State& from, const std::vector<
   }
   const double roundoff =
       run_.options.roundoff && replayable ? roundoff_of(mover, from, to, h) : 0.0;
-  // A closed form may have given up; that of a top is rounded to a polynomial.
-  mover.exact = mover.stepper->info().order == 0 &&
-                !run_.model.tumbles(run_.model.island_of(mover.island.bodies.front()));
-  Leg leg{mover.island, from, to_, run_.given_force, mover.exact, roundoff};
+  const bool exact = mover.closed_form(run_.model);
+  Leg leg{mover.island, from, to_, run_.given_force, exact, roundoff};
   if (mover.island.joints != nullptr) {
     leg.contact_work = run_.account.projected(projection);
     leg.riding_work =
@@ -296,15 +292,8 @@ double FrameMotions::roundoff_of(Mover& mover, const State& from, const std::vec
   for (std::size_t k = 0; k < to.size(); ++k) {
     mover.before[k] = from[mover.island.bodies[k]];
   }
-  mover.replayed.resize(to.size());
-  double sum = 0.0;
-  if (mover.stepper->replay(mover.island, h, mover.before, mover.replayed)) {
-    for (std::size_t k = 0; k < to.size(); ++k) {
-      sum += roundoff_energy(mover.island.inertia[k].mass, mover.island.constant_force[k], to[k],
-                             mover.replayed[k]);
-    }
-  }
-  return sum;
+  return mover.roundoff(h, mover.before, [&](std::size_t k) -> const BodyState& { return to[k]; })
+      .value_or(0.0);
 }
 
 /// What put the states back at the end of the motion that a leg of the proposal is on, if the leg
@@ -329,6 +318,7 @@ void FrameMotions::book_path(Mover& mover, double until) {
     if (!(end > from)) {
       end = until;  // what rounding left between the last motion and `until`
     }
+    assert(end > from && end <= until);
     const bool at_end = end >= proposed_;
     // Only the stepper's last step can be replayed, and only from where it began.
     const bool replayable = path_motion(first, from).start == paths_[first].back().start &&

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/schemes/frame/frame_run.hpp"
+#include "core/schemes/shared/island_run.hpp"
 
 #include <memory>
 #include <vector>
@@ -55,22 +56,17 @@ class FrameMotions {
   void persist(Archive& archive);
 
  private:
-  /// An island, its stepper, and how far the ledger has followed it.
-  struct Mover {
-    Island island;
-    std::unique_ptr<Stepper> stepper;
-    bool exact = false;
+  /// An island, and how far the ledger has followed it.
+  struct Mover : IslandRun {
+    using IslandRun::IslandRun;
+
     bool jumped = false;               ///< restart before the next step
-    bool carried = false;              ///< a hand holds its body: it has no steps of its own
-    std::vector<BodyState> states{};   ///< at the end of what was computed
     std::vector<Motion> motions{};     ///< dense output of the last step
     double last_step = 0.0;            ///< s
     std::vector<BodyState> booked{};   ///< where the ledger is
     std::vector<BodyState> before{};   ///< scratch: where a leg begins
     std::vector<BodyState> reached{};  ///< scratch: where it ends
-    std::vector<ReplayedStep> replayed{};
-    JointProjection projection{};  ///< at the end of the last step
-    /// The same of each motion of the proposal, and when it ends, s from now.
+    /// `projection` of each motion of the proposal, and when it ends, s from now.
     std::vector<std::pair<double, JointProjection>> projections{};
     double booked_until = 0.0;  ///< of the proposal, s
     double bent_at = 0.0;       ///< last, in the proposal, s
@@ -78,7 +74,6 @@ class FrameMotions {
     void persist(Archive& archive);
   };
 
-  void gather(Mover& mover) const;
   void begin_step(Mover& mover, Instant t);
   /// One step of the stepper, from `done` on and at most to `until` (s from now), which moves
   /// `done` on; its length is `Mover::last_step`. False: it failed, and the run is stopped.

@@ -4,6 +4,7 @@
 #include "core/spin_energy.hpp"
 
 #include <array>
+#include <cassert>
 
 namespace kairos {
 inline namespace core {
@@ -78,6 +79,7 @@ EnergyAccount::EnergyAccount(const Model& model, EnergyLedger& ledger)
     : model_(model), ledger_(ledger) {}
 
 double EnergyAccount::surplus(const Leg& leg) {
+  assert(leg.from.size() == leg.to.size() && leg.other_force.size() == leg.to.size());
   double surplus = 0.0;
   for (std::size_t k = 0; k < leg.island.bodies.size(); ++k) {
     const BodyIndex i = leg.island.bodies[k];
@@ -187,6 +189,7 @@ void EnergyAccount::leg(const Leg& leg) {
 
 void EnergyAccount::leg(const Leg& leg, std::span<const Motion> motions, Instant start,
                         double duration) {
+  assert(motions.size() == leg.island.bodies.size() && duration >= 0.0);
   double truncation = surplus(leg);
   gather(leg.island, leg.from, from_);
   gather(leg.island, leg.to, to_);

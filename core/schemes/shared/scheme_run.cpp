@@ -1,6 +1,7 @@
 #include "core/schemes/shared/scheme_run.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <tuple>
 
 namespace kairos {
@@ -21,6 +22,7 @@ SchemeRun::SchemeRun(const Model& of, const Method& method, const SchemeOptions&
 
 ImpactEnergy SchemeRun::exchange(Event& event, BodyState& a, BodyState& b, Vector3& force_a,
                                  Vector3& force_b, bool flat) {
+  assert(event.a != event.b);
   event.before_a = a;
   event.before_b = b;
   event.contact.restitution = model.restitution(event.a, event.b);

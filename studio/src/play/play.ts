@@ -94,7 +94,7 @@ export class Play {
       { p: this.grip.position(0), q: faceAt(0, this.grip.lift) });
     this.strokes = [];
     this.showCounts();
-    this.say("Click into the view: the hand tosses the ball up. When it falls, flick the pointer up.");
+    this.say("Serve, or click into the view: the hand tosses the ball up. When it falls, flick the pointer or the finger up.");
     this.resume();
   }
 
