@@ -30,7 +30,9 @@ struct Penetration {
 /// and not penetration; a ball at rest on a floor stands at a rounded height.
 class PenetrationProbe {
  public:
+  /// The model is kept by reference.
   explicit PenetrationProbe(const Model& model);
+  explicit PenetrationProbe(Model&& model) = delete;
 
   /// The deepest of all pairs; the first of equals in the order of `Model::pairs`. What is in a
   /// hand (see `Frame::in_hand`) has no contacts and penetrates nothing.

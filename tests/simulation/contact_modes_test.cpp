@@ -70,7 +70,8 @@ void check_whole(const Simulation& sim, const std::string& text) {
   INFO(sim.result.reason);
   REQUIRE(sim.result.status == RunStatus::completed);
   tests::check_explained(sim.result.ledger);
-  CHECK_FALSE(PenetrationProbe(Model(parse_scene(text, "test.toml"))).first(sim.result.state));
+  const Model model(parse_scene(text, "test.toml"));
+  CHECK_FALSE(PenetrationProbe(model).first(sim.result.state));
 }
 
 std::vector<Event> told(const Simulation& sim, EventKind kind) {

@@ -57,7 +57,8 @@ void check_whole(const Simulation& sim, const std::string& text) {
   INFO(sim.result.reason);
   REQUIRE(sim.result.status == RunStatus::completed);
   tests::check_explained(sim.result.ledger);
-  CHECK_FALSE(PenetrationProbe(Model(parse_scene(text, "test.toml"))).first(sim.result.state));
+  const Model model(parse_scene(text, "test.toml"));
+  CHECK_FALSE(PenetrationProbe(model).first(sim.result.state));
   CHECK(sim.result.ledger.line(EnergyLine::friction) <= 0.0);
   // Friction that sticks does no work: roundoff of an impulse times a velocity of none.
   CHECK(sim.result.ledger.line(EnergyLine::impact_friction) <= 1e-15);

@@ -41,7 +41,8 @@ void check_whole(const Simulation& sim, const std::string& text) {
   INFO(sim.result.reason);
   REQUIRE(sim.result.status == RunStatus::completed);
   tests::check_explained(sim.result.ledger);
-  const PenetrationProbe probe{Model(parse_scene(text, "test.toml"))};
+  const Model model(parse_scene(text, "test.toml"));
+  const PenetrationProbe probe(model);
   for (std::size_t k = 0; k < sim.trajectory.frame_times().size(); ++k) {
     CHECK_FALSE(probe.first(sim.trajectory.frame_state(k)));
   }
