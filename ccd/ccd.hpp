@@ -6,6 +6,7 @@
 #include "ccd/bisection.hpp"
 #include "ccd/box_batch.hpp"
 #include "ccd/certified.hpp"
+#include "ccd/collision_world.hpp"
 #include "ccd/conservative_advancement.hpp"
 #include "ccd/contact_patch.hpp"
 #include "ccd/dynamic_tree.hpp"

@@ -1,9 +1,9 @@
 #include "ccd/box_batch.hpp"
+#include "ccd/collision_world.hpp"
 #include "ccd/linear/exact_motion.hpp"
 #include "ccd/mesh/mesh_queries.hpp"
 #include "ccd/placed_cores.hpp"
 #include "ccd/relative_boxes.hpp"
-#include "ccd/swept_box.hpp"
 #include "core/mesh_body.hpp"
 #include "core/mesh_shapes.hpp"
 #include "core/random.hpp"
@@ -358,40 +358,44 @@ void crowd_bars(int rounds, std::vector<Bar>& bars) {
     const Vector3 velocity = 0.01 * random.direction();
     twists.push_back({velocity, 0.01 * random.direction()});
   }
-  double least = never;
-  std::size_t asked = 0, overlapping = 0;
+  double least = never, forgetful = never;
+  std::int64_t near = 0, reminded = 0;
+  std::size_t overlapping = 0;
   for (int round = 0; round < rounds; ++round) {
-    const auto broad = find_broad_phase("sweep-and-prune")(count);
+    ccd::CollisionWorld world(count);
     std::vector<Pose> now = poses;
-    std::vector<BodyIndex> near;
-    asked = overlapping = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      world.put(i, hulls[i], now[i]);
+    }
+    near = reminded = 0;
+    overlapping = 0;
     for (int frame = 0; frame < frames; ++frame) {
       const auto start = query_cost::Clock::now();
       for (std::size_t i = 0; i < count; ++i) {
-        const Motion still = Motion::at_rest({}, now[i]);
-        broad->update(i, ccd::swept_aabb(hulls[i], still, 0.0, 0.0));
+        world.move(i, now[i]);
       }
-      for (std::size_t i = 0; i < count; ++i) {
-        near.clear();
-        broad->candidates(i, near);
-        for (const BodyIndex j : near) {
-          if (j < i) {
-            ++asked;
-            overlapping += ccd::cores_overlap(hulls[i], now[i], hulls[j], now[j]) ? 1 : 0;
-          }
-        }
-      }
+      overlapping += world.touching().size();
       const double time = query_cost::nanoseconds(query_cost::Clock::now() - start);
-      least = frame > 0 ? std::min(least, time) : least;
+      double& kept = frame > 0 ? least : forgetful;  // the first frame remembers nothing
+      kept = std::min(kept, time);
+      if (frame > 0) {
+        near += world.cost().near;
+        reminded += world.cost().reminded;
+      }
       for (std::size_t i = 0; i < count; ++i) {
         now[i] = {now[i].position + twists[i].linear,
-                  kairos::rotate(twists[i].angular, now[i].orientation)};
+                  kairos::rotate(twists[i].angular, now[i].orientation).normalized()};
       }
     }
   }
-  fmt::print("Which of {} hulls overlap? {} frames\n  {:<44}{:>12.1f}\n  {:<44}{:>12.1f}\n", count,
-             frames, "pairs asked a frame", static_cast<double>(asked) / frames,
-             "pairs that overlap", static_cast<double>(overlapping) / frames);
+  const auto later = static_cast<double>(frames - 1);
+  fmt::print(
+      "Which of {} hulls overlap? {} frames\n  {:<44}{:>12.1f}\n  {:<44}{:>12.1f}\n"
+      "  {:<44}{:>12.1f}\n  {:<44}{:>12.2f}\n",
+      count, frames, "pairs whose boxes overlap, a frame", static_cast<double>(near) / later,
+      "of them apart along last frame's direction", static_cast<double>(reminded) / later,
+      "pairs that overlap", static_cast<double>(overlapping) / frames,
+      "the first frame, which remembers nothing, ms", 1e-6 * forgetful);
   bars.push_back({"1,000 hulls, a frame, ms", 1e-6 * least, 1.0});
 }
 

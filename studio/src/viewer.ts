@@ -47,6 +47,7 @@ export class Viewer {
   private film: Film | null = null;
   private readonly composed = document.createElement("canvas");
   private said = "";
+  private listed = "";
 
   /** Piece by piece, so that the page is never blocked for long. */
   static async open(runs: Run[]): Promise<Viewer> {
@@ -133,8 +134,7 @@ export class Viewer {
       .map((each) => `${each.method}: stopped at ${seconds(each.end)}: ${each.reason}`).join(" — ");
     const notes = this.runs.filter((each) => each.note !== "").map((each) => `${each.method}: ${each.note}.`);
     element("notes").textContent = [...notes, "SI units; y is up."].join(" ");
-    list("body").replaceChildren(...run.bodies.map((body, i) => option(String(i), body.name)));
-    list("other").replaceChildren(option("-1", "nearest"), ...run.bodies.map((body, i) => option(String(i), body.name)));
+    this.listBodies(run.bodies.map((body) => body.name));
     if (filmType() === "") {
       element<HTMLButtonElement>("film").disabled = true;
       element("film").title = "This browser records no films";
@@ -149,6 +149,16 @@ export class Viewer {
       joint: run.joints.length > 0, belt: run.bodies.some((body) => body.belt !== undefined),
     };
     for (const [key, there] of Object.entries(keys)) document.querySelector<HTMLElement>(`.key.${key}`)!.hidden = !there;
+  }
+
+  /** The lists to choose a body from; a choice stays while the bodies do. */
+  private listBodies(names: string[]): void {
+    const now = names.join("\n");
+    if (now === this.listed) return;
+    this.listed = now;
+    const options = () => names.map((name, i) => option(String(i), name));
+    list("body").replaceChildren(...options());
+    list("other").replaceChildren(option("-1", "nearest"), ...options());
   }
 
   private bind(): void {

@@ -5,6 +5,7 @@ import {
   Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, Plane, PlaneGeometry, Quaternion, Scene,
   Vector3, type Camera,
 } from "three";
+import { balls, type Lights } from "./balls";
 import { Belts } from "./belts";
 import { Contacts, type Overlap } from "./contacts";
 import type { Body, Run, Shape } from "./data";
@@ -75,6 +76,7 @@ export class World {
   private readonly s = new Vector3();
   private readonly colours: Record<"background" | "inside" | "normal" | "impulse" | "edge", Color>;
   private readonly movers: number[];
+  private lights!: Lights;
 
   constructor(public run: Run, private readonly colour: Palette) {
     this.motions = new Motions(run);
@@ -174,11 +176,13 @@ export class World {
 
   private light(): void {
     this.scene.background = this.colours.background;
-    this.scene.add(new HemisphereLight(0xffffff, 0x8a8f96, this.colour.dark ? 1.5 : 1.9));
-    this.scene.add(new AmbientLight(0xffffff, 0.35));
     const sun = new DirectionalLight(0xffffff, 1.6);
     sun.position.set(0.5, 1, 0.8);
-    this.scene.add(sun);
+    const ambient = new AmbientLight(0xffffff, 0.35);
+    const hemisphere = new HemisphereLight(0xffffff, 0x8a8f96, this.colour.dark ? 1.5 : 1.9);
+    this.scene.add(hemisphere, ambient, sun);
+    const bright = (light: AmbientLight | DirectionalLight) => light.color.clone().multiplyScalar(light.intensity);
+    this.lights = { hemisphere, ambient: bright(ambient), sun: sun.position, sunColour: bright(sun) };
   }
 
   private tone(body: Body, i: number): Color {
@@ -197,15 +201,10 @@ export class World {
     });
     for (const [key, bodies] of kinds) {
       const { shape } = run.bodies[bodies[0]];
-      const geometry = solidGeometry(shape, bodies.length);
       const round = shape.kind === "sphere";
       const field = key.endsWith("field");
       const seeThrough = field || (key.endsWith("fixed") && !round);
-      const material = new MeshLambertMaterial({
-        vertexColors: geometry.hasAttribute("color"), transparent: seeThrough, opacity: field ? 0.25 : seeThrough ? 0.62 : 1,
-        depthWrite: !field, flatShading: shape.kind === "hull" || shape.kind === "mesh", side: shape.kind === "mesh" ? DoubleSide : FrontSide,
-      });
-      const mesh = new InstancedMesh(geometry, material, bodies.length);
+      const mesh = round && !field ? balls(bodies.length, this.lights) : this.solids(shape, bodies.length, field, seeThrough);
       mesh.instanceMatrix.setUsage(DynamicDrawUsage);
       mesh.frustumCulled = false;
       mesh.userData.field = field;
@@ -214,6 +213,15 @@ export class World {
       this.batches.push({ mesh, bodies });
       this.scene.add(mesh);
     }
+  }
+
+  private solids(shape: Shape, count: number, field: boolean, seeThrough: boolean): InstancedMesh {
+    const geometry = solidGeometry(shape, count);
+    const material = new MeshLambertMaterial({
+      vertexColors: geometry.hasAttribute("color"), transparent: seeThrough, opacity: field ? 0.25 : seeThrough ? 0.62 : 1,
+      depthWrite: !field, flatShading: shape.kind === "hull" || shape.kind === "mesh", side: shape.kind === "mesh" ? DoubleSide : FrontSide,
+    });
+    return new InstancedMesh(geometry, material, count);
   }
 
   /** A half-space: a piece of its face with a grid, seen from outside only. */

@@ -91,8 +91,10 @@ test("every shipped scene loads, runs beside the thesis' method and is shown, si
 test("a body that is dragged is where the text says; undo brings it back, redo there again", async () => {
   const { page, context, said } = await start();
   const was = await text(page);
+  await page.selectOption("#other", { label: "floor" });
   await settled(page, async () => drag(page, await onScreen(page, "ball"), 60, -40));
   await page.waitForTimeout(200);
+  assert.equal(await page.locator("#other option:checked").textContent(), "floor", "what was chosen to look at stays");
   const moved = await text(page);
   const position = positionOf(moved, "ball");
   assert.notDeepEqual(position, [0, 5, 0]);

@@ -59,6 +59,41 @@ for (const words of [["bounce"], ["bat", "--beside", "thesis"], ["billiard", "--
   });
 }
 
+test("a ball is drawn where it is: its colour within the circle that it is seen as, the ground of the view beyond", async () => {
+  const { page, context, said } = await open(chrome, await view("bounce"));
+  await page.selectOption("#trail", "0");
+  const { within, beyond, linked } = await page.evaluate(() => {
+    const { stage, worlds, runs, body } = window.kairos;
+    window.kairos.player.seek(0.5);
+    window.kairos.draw();
+    const small = document.createElement("canvas");
+    Object.assign(small, { width: stage.canvas.width, height: stage.canvas.height });
+    const context = small.getContext("2d", { willReadFrequently: true });
+    context.drawImage(stage.canvas, 0, 0);
+    const centre = stage.placeOf(body, 1, 1);
+    const r = runs[0].bodies[body].shape.x;
+    const [right, up] = [0, 1].map((k) => centre.clone().setFromMatrixColumn(stage.camera.matrixWorld, k));
+    /** Pixel of a point so many radii from the centre, across the view. */
+    const pixel = (x, y) => {
+      const at = centre.clone().addScaledVector(right, x * r).addScaledVector(up, y * r).project(stage.camera);
+      return [...context.getImageData((0.5 + at.x / 2) * small.width, (0.5 - at.y / 2) * small.height, 1, 1).data].slice(0, 3);
+    };
+    const ground = worlds[0].scene.background.getHexString();
+    const off = (x, y) => Math.max(...pixel(x, y).map((c, k) => Math.abs(c - parseInt(ground.slice(2 * k, 2 * k + 2), 16))));
+    const gl = stage.renderer.getContext();
+    return {
+      within: [[0, 0], [0.93, 0], [-0.93, 0], [0, 0.93], [0, -0.93], [0.6, 0.6]].map(([x, y]) => off(x, y)),
+      beyond: [[1.1, 0], [-1.1, 0], [0, 1.1], [0.8, 0.8]].map(([x, y]) => off(x, y)),
+      linked: stage.renderer.info.programs.every(({ program }) => gl.getProgramParameter(program, gl.LINK_STATUS)),
+    };
+  });
+  assert.ok(linked, "the graphics card takes all programs");
+  assert.ok(Math.min(...within) > 60, `within: ${within}`);
+  assert.ok(Math.max(...beyond) < 20, `beyond: ${beyond}`);
+  assert.deepEqual(spoken(said), []);
+  await context.close();
+});
+
 test("the clock goes by keys: frames, events, start, end, play, speed", async () => {
   const { page, context, said } = await open(chrome, await view("bounce"));
   const { frames, instants } = await page.evaluate(() => ({
