@@ -34,6 +34,7 @@ void EventMotions::book(Flow& flow, Instant t) {
   for (std::size_t k = 0; k < flow.states.size(); ++k) {
     const BodyIndex i = flow.island.bodies[k];
     now_[i] = whole ? flow.states[k] : at(i, t);
+    mark_brought(i, t);
   }
   const double roundoff =
       run_.options.roundoff && !bodies_[first].turns ? new_roundoff(flow, t) : 0.0;
@@ -135,17 +136,10 @@ double EventMotions::riding_work(const Flow& flow, Instant t) {
 
 /// Roundoff of the current segment since the ledger last looked, J.
 double EventMotions::new_roundoff(Flow& flow, Instant t) {
-  flow.replayed.resize(flow.launched.size());
-  if (!flow.stepper->replay(flow.island, t - start_of(flow.island.bodies.front()), flow.launched,
-                            flow.replayed)) {
-    return 0.0;
-  }
-  double sum = 0.0;
-  for (std::size_t k = 0; k < flow.replayed.size(); ++k) {
-    sum += roundoff_energy(flow.island.inertia[k].mass, flow.island.constant_force[k],
-                           now_[flow.island.bodies[k]], flow.replayed[k]);
-  }
-  return sum - std::exchange(flow.roundoff, sum);
+  const auto lost =
+      flow.roundoff(t - start_of(flow.island.bodies.front()), flow.launched,
+                    [&](std::size_t k) -> const BodyState& { return now_[flow.island.bodies[k]]; });
+  return lost ? *lost - std::exchange(flow.lost, *lost) : 0.0;
 }
 
 }  // namespace core

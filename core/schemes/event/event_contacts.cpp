@@ -1,6 +1,7 @@
 #include "core/schemes/event/event_contacts.hpp"
 
 #include "core/archive.hpp"
+#include "core/schemes/event/jump.hpp"
 
 #include <fmt/format.h>
 
@@ -99,14 +100,7 @@ void EventContacts::take_out(BodyIndex i, Instant t) {
 
 void EventContacts::stay(BodyIndex a, BodyIndex b, Instant t) {
   const std::array<BodyIndex, 2> pair{a, b};
-  for (const BodyIndex i : pair) {
-    if (run_.model.is_free(i)) {
-      motions_.book(i, t);
-    }
-    if (run_.model.mobility(i) != Mobility::fixed) {
-      motions_.bring(i, t);
-    }
-  }
+  motions_.open_pair(a, b, t);
   (void)meet_in_one_box(a, b, t);
   if (run_.stopped()) {
     return depart(a, b, t);
@@ -394,11 +388,7 @@ void EventContacts::end_contact(BodyIndex i, Instant t) {
 }
 
 void EventContacts::leave_support(BodyIndex i, Instant t) {
-  motions_.book(i, t);
-  motions_.bring(i, t);
-  end_contact(i, t);
-  motions_.launch(i, t);
-  predictor_.predict(i, t);
+  jump(motions_, predictor_, i, t, [&] { end_contact(i, t); });
 }
 
 void EventContacts::carry_riders(BodyIndex surface, Instant t) {
@@ -412,11 +402,7 @@ void EventContacts::carry_riders(BodyIndex surface, Instant t) {
   }
   for (const BodyIndex i : run_.agenda.by_name()) {
     if (motions_.is_supported_by(i, surface)) {
-      motions_.book(i, t);
-      motions_.bring(i, t);
-      resume_support(i, t);
-      motions_.launch(i, t);
-      predictor_.predict(i, t);
+      jump(motions_, predictor_, i, t, [&] { resume_support(i, t); });
     }
   }
 }
@@ -425,10 +411,7 @@ void EventContacts::carry_riders(BodyIndex surface, Instant t) {
 
 void EventContacts::cross_field(BodyIndex a, BodyIndex b, Instant t, bool entering) {
   const auto [field, body] = run_.model.is_field(a) ? std::pair{a, b} : std::pair{b, a};
-  motions_.book(body, t);
-  for (const BodyIndex k : motions_.island(body)) {
-    motions_.bring(k, t);
-  }
+  motions_.open(body, t);
   std::vector<BodyIndex> group;
   if (modes_.holds(body)) {
     const std::array<BodyIndex, 1> seed{body};
@@ -444,13 +427,11 @@ void EventContacts::cross_field(BodyIndex a, BodyIndex b, Instant t, bool enteri
   if (!group.empty()) {
     return settle(group, t) ? void() : set_free(group, t);
   }
-  if (motions_.support(body)) {
-    resume_support(body, t);
-  }
-  motions_.launch(body, t);
-  for (const BodyIndex k : motions_.island(body)) {
-    predictor_.predict(k, t);
-  }
+  jump(motions_, predictor_, body, t, [&] {
+    if (motions_.support(body)) {
+      resume_support(body, t);
+    }
+  });
 }
 
 void EventContacts::Touching::persist(Archive& archive) { archive(settled, contact_begins); }

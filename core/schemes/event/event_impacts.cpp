@@ -67,14 +67,7 @@ bool EventContacts::meet_in_one_box(BodyIndex a, BodyIndex b, Instant t) {
 }
 
 void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double patience, bool decided) {
-  for (const BodyIndex i : {a, b}) {
-    if (run_.model.is_free(i)) {
-      motions_.book(i, t);
-    }
-    if (run_.model.mobility(i) != Mobility::fixed) {
-      motions_.bring(i, t);
-    }
-  }
+  motions_.open_pair(a, b, t);
   const bool moved = meet_in_one_box(a, b, t);
   if (run_.stopped()) {
     return depart(a, b, t);

@@ -4,6 +4,7 @@
 #include "core/joint_system.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -26,6 +27,9 @@ EventMotions::EventMotions(EventRun& run, const Method& method)
       flights_(run.model.size()),
       flies_(run.model.size(), 0),
       now_(run.model.initial_state()),
+#ifndef NDEBUG
+      brought_(run.model.size(), run.time),
+#endif
       booked_(now_),
       field_forces_(run.model.size(), Vector3::Zero()) {
   whole_.resize(run.model.size() <= few ? run.model.size() : 0);
@@ -33,9 +37,8 @@ EventMotions::EventMotions(EventRun& run, const Method& method)
     flight.radius = std::numeric_limits<double>::infinity();
   }
   for (std::size_t k = 0; k < run.model.islands().size(); ++k) {
-    Flow flow{.island = run.model.islands()[k], .stepper = method.stepper(run.model, k)};
+    Flow flow(run.model, method, k);
     flow.exact = flow.stepper->info().order == 0;
-    flow.states.resize(flow.island.bodies.size());
     if (flow.states.size() > motions_.size()) {
       motions_.resize(flow.states.size());
     }
@@ -62,9 +65,7 @@ void EventMotions::begin() {
     if (run_.model.is_free(i) && island(i).front() == i) {
       Flow& flow = flow_of(i);
       set_forces(flow);
-      for (std::size_t k = 0; k < flow.states.size(); ++k) {
-        flow.states[k] = now_[flow.island.bodies[k]];
-      }
+      flow.gather(now_);
       flow.stepper->start(flow.island, run_.time, flow.states);
       next_segment(flow, run_.time);
     }
@@ -91,8 +92,38 @@ void EventMotions::bring_others(BodyIndex i, Instant t) {
 
 // --- Motions -----------------------------------------------------------------------------------
 
+void EventMotions::open(BodyIndex i, Instant t) {
+  book(i, t);
+  for (const BodyIndex k : island(i)) {
+    bring(k, t);
+  }
+}
+
+void EventMotions::open_pair(BodyIndex a, BodyIndex b, Instant t) {
+  for (const BodyIndex i : {a, b}) {
+    if (run_.model.is_free(i)) {
+      book(i, t);
+    }
+    if (run_.model.mobility(i) != Mobility::fixed) {
+      bring(i, t);
+    }
+  }
+}
+
+/// What is forgotten before a launch would be a wrong ledger or a wrong motion, and no error.
+void EventMotions::check_ready([[maybe_unused]] const Flow& flow,
+                               [[maybe_unused]] Instant t) const {
+  assert(!(flow.booked < t));
+#ifndef NDEBUG
+  for (const BodyIndex k : flow.island.bodies) {
+    assert(brought_[k] == t);
+  }
+#endif
+}
+
 void EventMotions::launch(BodyIndex i, Instant t) {
   Flow& flow = flow_of(i);
+  check_ready(flow, t);
   flow.held = false;
   for (const BodyIndex k : flow.island.bodies) {
     bodies_[k].rubs.clear();
@@ -103,18 +134,14 @@ void EventMotions::launch(BodyIndex i, Instant t) {
   if (flow.island.joints != nullptr) {
     put_onto_joints(i, t);
   }
-  for (std::size_t k = 0; k < flow.states.size(); ++k) {
-    flow.states[k] = now_[flow.island.bodies[k]];
-  }
+  flow.gather(now_);
   flow.stepper->restart(flow.island, t, flow.states);
   next_segment(flow, t);
 }
 
 void EventMotions::put_onto_joints(BodyIndex i, Instant t) {
   Flow& flow = flow_of(i);
-  for (std::size_t k = 0; k < flow.states.size(); ++k) {
-    flow.states[k] = now_[flow.island.bodies[k]];
-  }
+  flow.gather(now_);
   const JointProjection projection = flow.island.joints->project_velocities(t, flow.states);
   run_.ledger.add(EnergyLine::projection, projection.velocity);
   run_.ledger.add(EnergyLine::driven_work, projection.driven);
@@ -127,6 +154,7 @@ void EventMotions::put_onto_joints(BodyIndex i, Instant t) {
 
 void EventMotions::rest(BodyIndex i, Instant t) {
   Flow& flow = flow_of(i);
+  check_ready(flow, t);
   flow.held = true;
   for (std::size_t k = 0; k < flow.states.size(); ++k) {
     const BodyIndex body = flow.island.bodies[k];
@@ -154,6 +182,7 @@ void EventMotions::turn(BodyIndex i, Instant t, const Turn& turn) {
 
 void EventMotions::hold(BodyIndex i, Instant t, const Twist& acceleration) {
   Flow& flow = flow_of(i);
+  check_ready(flow, t);
   flow.held = true;
   set_support(i, std::nullopt);
   bodies_[i].rubs.clear();
@@ -165,7 +194,7 @@ void EventMotions::hold(BodyIndex i, Instant t, const Twist& acceleration) {
   flow.booked = t;
   if (run_.options.roundoff) {
     flow.launched = flow.states;
-    flow.roundoff = 0.0;
+    flow.lost = 0.0;
   }
   Motion motion = Motion::ballistic(t, std::numeric_limits<double>::infinity(), now_[i].pose,
                                     now_[i].twist, acceleration.linear);
@@ -205,7 +234,7 @@ void EventMotions::next_segment(Flow& flow, Instant t) {
   flow.booked = t;
   if (run_.options.roundoff) {
     flow.launched = flow.states;
-    flow.roundoff = 0.0;
+    flow.lost = 0.0;
   }
   const double longest = run_.options.step > 0.0 ? run_.options.step : run_.mean_frame;
   // A closed form has no end of its own.
@@ -347,6 +376,7 @@ void EventMotions::hold(Flow& flow, Instant t) {
 void EventMotions::carry(BodyIndex i, BodyIndex hand, const BodyState& state, Instant t) {
   Flow& flow = flow_of(i);
   now_[i] = state;
+  mark_brought(i, t);
   run_.account.carried(flow.island, t, booked_, now_);
   booked_[i] = state;
   flow.booked = t;
@@ -453,7 +483,7 @@ void EventMotions::Rub::persist(Archive& archive) {
 }
 
 void EventMotions::Flow::persist(Archive& archive) {
-  archive(island.constant_force, exact, carried, held, states, launched, roundoff, booked,
+  archive(island.constant_force, exact, carried, held, states, launched, lost, booked,
           projection.velocity, projection.driven, projection.position);
   stepper->persist(archive);
 }

@@ -2,6 +2,7 @@
 
 #include "core/schemes/event/event_run.hpp"
 #include "core/schemes/event/stored_motion.hpp"
+#include "core/schemes/shared/island_run.hpp"
 #include "core/schemes/shared/support.hpp"
 
 #include <cstdint>
@@ -63,7 +64,14 @@ class EventMotions {
   /// launches from it. Of no meaning otherwise, except of what is fixed.
   [[nodiscard]] BodyState& now(BodyIndex i) { return now_[i]; }
   [[nodiscard]] const BodyState& now(BodyIndex i) const { return now_[i]; }
-  void bring(BodyIndex i, Instant t) { now_[i] = at(i, t); }
+  void bring(BodyIndex i, Instant t) {
+    now_[i] = at(i, t);
+    mark_brought(i, t);
+  }
+  /// The ledger follows the island of i up to t, and all its bodies are brought: before it jumps.
+  void open(BodyIndex i, Instant t);
+  /// Of two that meet: the ledger follows their islands, and both are brought.
+  void open_pair(BodyIndex a, BodyIndex b, Instant t);
   /// Every body of the island of i but i itself.
   void bring_others(BodyIndex i, Instant t);
   [[nodiscard]] const std::vector<BodyIndex>& island(BodyIndex i) const {
@@ -177,20 +185,17 @@ class EventMotions {
     bool turns = false;                   ///< while it touches
     std::vector<Polynomial<3>> worked{};  ///< see `Turn`; none while nothing turns
   };
-  /// An island, its stepper, and how far the ledger has followed it.
-  struct Flow {
-    Island island;
-    std::unique_ptr<Stepper> stepper;
-    bool exact = false;
-    bool carried = false;                     ///< a hand holds its body
+  /// An island, and how far the ledger has followed it. Its states are those at the end of the
+  /// segment, and so is its projection.
+  struct Flow : IslandRun {
+    using IslandRun::IslandRun;
+
+    bool exact = false;                       ///< the stepper has no error of its own
     bool held = false;                        ///< contact forces hold it: no stepper moves it
-    std::vector<BodyState> states{};          ///< at the end of the segment
     std::unique_ptr<SupportForce> support{};  ///< while it slides under state-dependent forces
     std::vector<BodyState> launched{};        ///< where the segment began: for replays
-    std::vector<ReplayedStep> replayed{};
-    double roundoff = 0.0;         ///< of the segment so far, J
-    Instant booked{};              ///< how far the ledger has followed it
-    JointProjection projection{};  ///< at the end of the segment
+    double lost = 0.0;                        ///< to roundoff, in the segment so far, J
+    Instant booked{};                         ///< how far the ledger has followed it
 
     void persist(Archive& archive);
   };
@@ -214,6 +219,13 @@ class EventMotions {
   [[nodiscard]] double new_roundoff(Flow& flow, Instant t);
 
   [[nodiscard]] Flow& flow_of(BodyIndex i) { return flows_[run_.model.island_of(i)]; }
+  /// `now` of body i is its state at t. What is launched must be: asserts hold it.
+  void mark_brought([[maybe_unused]] BodyIndex i, [[maybe_unused]] Instant t) {
+#ifndef NDEBUG
+    brought_[i] = t;
+#endif
+  }
+  void check_ready(const Flow& flow, Instant t) const;
 
   EventRun& run_;
   std::vector<MovingBody> bodies_;
@@ -222,6 +234,9 @@ class EventMotions {
   std::vector<char> flies_;
   std::vector<Flow> flows_;
   State now_;
+#ifndef NDEBUG
+  std::vector<Instant> brought_;  ///< by body: when `now` is
+#endif
   State booked_;                       ///< where the ledger is
   std::vector<Vector3> field_forces_;  ///< N, as of the last launch
   std::vector<Motion> whole_;          ///< of few bodies, where room is no matter; else empty

@@ -102,8 +102,7 @@ void EventWorld::next_epoch(Instant t) {
     // next motion tells.
     const auto& support = motions_.support(i);
     if (support && run_.model.mobility(support->surface) != Mobility::driven) {
-      motions_.book(i, t);
-      motions_.bring(i, t);
+      motions_.open(i, t);
       motions_.launch(i, t);
     }
   }
