@@ -16,9 +16,13 @@ class BoxBatch {
   /// half_a, half_b, d_A and the columns of axes_A of `RelativeBoxes`.
   static constexpr std::size_t components = 18;
 
+  /// Room for so many pairs, so that `push_back` does not allocate.
   void reserve(std::size_t pairs);
+  /// No pair is left; the room is.
   void clear();
+  /// Appends a pair.
   void push_back(const RelativeBoxes& boxes);
+  /// How many pairs there are.
   [[nodiscard]] std::size_t size() const { return values_[0].size(); }
   /// Pair i < size().
   [[nodiscard]] RelativeBoxes at(std::size_t i) const;

@@ -20,3 +20,6 @@
 #include "ccd/sweep_and_prune.hpp"
 #include "ccd/swept_box.hpp"
 #include "ccd/toi_batch.hpp"
+
+/// Geometry in time: overlap, distance, swept volumes, time of impact.
+namespace kairos::ccd {}

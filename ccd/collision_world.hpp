@@ -33,6 +33,7 @@ struct Touch {
 /// which is safe, whatever it has become (ccd/README.md, any direction is safe).
 class CollisionWorld {
  public:
+  /// What is called with two that touch.
   using Response = std::function<void(const Touch&)>;
   /// Of the last `touching`, pairs.
   struct Cost {
@@ -51,6 +52,7 @@ class CollisionWorld {
   void move(BodyIndex object, const Pose& pose);
   /// Takes an object and its own response out of the world; one that is not there is none.
   void remove(BodyIndex object);
+  /// Whether it holds this object.
   [[nodiscard]] bool has(BodyIndex object) const;
 
   /// What happens where two touch of which nothing else is said; an empty one takes it back, in the
@@ -58,11 +60,13 @@ class CollisionWorld {
   void respond(Response response) { for_all_ = std::move(response); }
   /// Where this object is one of them; if both have one, that of the smaller number.
   void respond(BodyIndex object, Response response);
+  /// Where these two touch each other: goes before what is said of one of them, or of all.
   void respond(BodyIndex a, BodyIndex b, Response response);
 
   /// All pairs that touch, in ascending order, after their responses were called; valid until the
   /// next call. A response may move objects: that counts from the next call on.
   const std::vector<Touch>& touching();
+  /// What the last `touching` cost.
   [[nodiscard]] const Cost& cost() const { return cost_; }
 
  private:

@@ -29,6 +29,7 @@ struct PatchCorners {
   int size = 0;
   std::array<ContactPatch, 12> points{};
 };
+/// Corners of the patch along an axis of these boxes.
 [[nodiscard]] PatchCorners patch_corners(const RelativeBoxes& boxes, const AxisSeparation& axis);
 
 /// Centroid of the lowest vertices, within roundoff, of a box along a direction: the point where it

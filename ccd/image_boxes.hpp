@@ -14,9 +14,12 @@ namespace kairos::ccd {
 /// it is the broad phase itself. Half-spaces are the same in all images: they have one.
 class ImageBoxes {
  public:
+  /// Images as in the model's periodic box, if it has one; `boxes` finds what overlaps.
   ImageBoxes(const Model& model, std::unique_ptr<BroadPhase> boxes);
 
+  /// The box of body i from now on, world frame, m.
   void update(BodyIndex i, const Aabb& box);
+  /// Body i is not found any longer.
   void remove(BodyIndex i) { boxes_->remove(i); }
   /// Every image of another body that could overlap `box`, that of body i, appended.
   void near(BodyIndex i, const Aabb& box, std::vector<Neighbour>& out);

@@ -11,8 +11,11 @@ namespace kairos::ccd {
 /// Do they overlap, touching included? As the separation that was found says, rounding aside.
 [[nodiscard]] bool cores_overlap(const Shape& a, const Pose& pose_a, const Shape& b,
                                  const Pose& pose_b);
+/// Signed gap (m; negative: depth), unit normal from a to b and centroid of the contact patch,
+/// world.
 [[nodiscard]] Overlap measure_cores(const Shape& a, const Pose& pose_a, const Shape& b,
                                     const Pose& pose_b);
+/// Points of the contact patch whose gap is at most `reach` (m), world frame.
 [[nodiscard]] ContactManifold core_manifold(const Shape& a, const Pose& pose_a, const Shape& b,
                                             const Pose& pose_b, double reach);
 
@@ -33,6 +36,7 @@ struct DepthBounds {
   double upper = 0.0;
   Vector3 normal = Vector3::UnitX();  ///< along which b parts from a by `upper`, world
 };
+/// The depth of any two shapes but half-spaces.
 [[nodiscard]] DepthBounds depth(const Shape& a, const Pose& pose_a, const Shape& b,
                                 const Pose& pose_b);
 

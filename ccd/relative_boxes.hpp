@@ -15,7 +15,10 @@ struct RelativeBoxes {
   Matrix3 axes_A = Matrix3::Identity();  ///< columns: axes of b in the frame of a (R_AB)
 
   RelativeBoxes() = default;
+  /// Two boxes at poses in the world.
   RelativeBoxes(const Box& a, const Pose& pose_a, const Box& b, const Pose& pose_b);
+  /// Half extents (m) and axes (columns, world frame) of both; centre of b from that of a (world,
+  /// m).
   RelativeBoxes(const Vector3& half_a_, const Matrix3& R_WA, const Vector3& half_b_,
                 const Matrix3& R_WB, const Vector3& d_W);
 
@@ -34,14 +37,17 @@ struct AxisSeparation {
   double value = 0.0;   ///< along the unnormalised axis, m (times its length)
   double length = 1.0;  ///< of the unnormalised axis: 1 for faces, the sine for edges
   double sign = 1.0;    ///< +1 if the axis points from a to b as it stands
+  /// Along the unit axis, m; negative: they overlap along it.
   [[nodiscard]] double gap() const { return value / length; }
 };
 
+/// Separation along one axis, 0 <= `axis` < `axis_count`.
 [[nodiscard]] AxisSeparation axis_separation(const RelativeBoxes& boxes, int axis);
 /// The axis of greatest separation. An edge pair competes with its separation lowered by the
 /// rounding error before it is normalised: nearly parallel edges, whose cross product is noise,
 /// can never win, and no angle has to be called "parallel".
 [[nodiscard]] AxisSeparation greatest_separation(const RelativeBoxes& boxes);
+/// The same of boxes that are given as in the constructor of `RelativeBoxes`.
 [[nodiscard]] AxisSeparation greatest_separation(const Vector3& half_a, const Matrix3& R_WA,
                                                  const Vector3& half_b, const Matrix3& R_WB,
                                                  const Vector3& d_W);
@@ -54,15 +60,18 @@ struct AxisSeparation {
 /// Are they apart by more than the rounding error of any separation?
 [[nodiscard]] bool boxes_apart(const RelativeBoxes& boxes);
 
+/// What can be proven about an overlap.
 enum class Verdict { separated, overlapping, undecided };
 /// The same question proven: `separated` and `overlapping` hold for the real numbers that the
 /// arguments are, `undecided` means that rounding could have decided.
 [[nodiscard]] Verdict classify(const RelativeBoxes& boxes);
+/// The same of boxes in the world.
 [[nodiscard]] Verdict classify(const OrientedBox& a, const OrientedBox& b);
 /// The same with coherence: `axis` is asked first, the one that separated these boxes when they
 /// were last looked at (any at first); where others have to be asked it becomes one that separates
 /// now.
 [[nodiscard]] Verdict classify(const RelativeBoxes& boxes, int& axis);
+/// The same of boxes that are given as in the constructor of `RelativeBoxes`.
 [[nodiscard]] Verdict classify(const Vector3& half_a, const Matrix3& R_WA, const Vector3& half_b,
                                const Matrix3& R_WB, const Vector3& d_W);
 

@@ -14,6 +14,7 @@ struct Reach {
   double lower = 0.0;  ///< m
   double upper = 0.0;  ///< m
 };
+/// `n`: unit, world frame; s0 <= s1, local time of the motion, s.
 [[nodiscard]] Reach swept_reach(const Shape& shape, const Motion& motion, double s0, double s1,
                                 const Vector3& n);
 

@@ -38,28 +38,38 @@ class BodyPairs {
   BodyPairs(std::vector<PairRole> roles, bool all, std::vector<BodyPair> apart = {})
       : roles_(std::move(roles)), apart_(std::move(apart)), all_(all) {}
 
+  /// Goes through the pairs in order.
   class Iterator {
    public:
+    /// A pair is made when it is asked for: all are values.
     using value_type = BodyPair;
+    /// Of standard iterators.
     using difference_type = std::ptrdiff_t;
+    /// Of standard iterators: a value.
     using reference = BodyPair;
+    /// Of standard iterators.
     using iterator_category = std::input_iterator_tag;
 
     Iterator() = default;
+    /// At the first pair whose first body is `a` or a later one.
     Iterator(const BodyPairs& pairs, BodyIndex a) : pairs_(&pairs), a_(a), b_(a) { ++*this; }
 
+    /// The pair.
     BodyPair operator*() const { return {a_, b_}; }
+    /// The next pair.
     Iterator& operator++() {
       do {
         step();
       } while (a_ < pairs_->roles_.size() && !pairs_->contains(a_, b_));
       return *this;
     }
+    /// The next pair; returns the one before.
     Iterator operator++(int) {
       const Iterator before = *this;
       ++*this;
       return before;
     }
+    /// Whether both are at the same pair.
     friend bool operator==(const Iterator& x, const Iterator& y) {
       return x.a_ == y.a_ && x.b_ == y.b_;
     }
@@ -80,10 +90,13 @@ class BodyPairs {
     BodyIndex b_ = 0;
   };
 
+  /// The first pair.
   [[nodiscard]] Iterator begin() const { return roles_.empty() ? end() : Iterator(*this, 0); }
+  /// Beyond the last pair.
   [[nodiscard]] Iterator end() const {
     return roles_.empty() ? Iterator() : Iterator(*this, roles_.size());
   }
+  /// Whether there is no pair.
   [[nodiscard]] bool empty() const { return begin() == end(); }
   /// Counted by role: what is the same for all bodies of two roles is asked once.
   [[nodiscard]] std::size_t size() const {
@@ -103,9 +116,11 @@ class BodyPairs {
     }
     return all_ ? pairs : pairs - apart_.size();
   }
+  /// Whether a and b, two different bodies, are a pair of these.
   [[nodiscard]] bool contains(BodyIndex a, BodyIndex b) const {
     return all_ || (interaction(roles_[a], roles_[b]) && !kept_apart(a, b));
   }
+  /// Whether a and b do nothing to each other though their roles would let them.
   [[nodiscard]] bool kept_apart(BodyIndex a, BodyIndex b) const {
     return !apart_.empty() &&
            std::binary_search(apart_.begin(), apart_.end(), BodyPair(std::minmax(a, b)));

@@ -16,6 +16,7 @@ struct Aabb {
   Vector3 lower = Vector3::Zero();
   Vector3 upper = Vector3::Zero();
 
+  /// Whether the two boxes have a point in common.
   [[nodiscard]] bool overlaps(const Aabb& other) const {
     return (lower.array() <= other.upper.array()).all() &&
            (other.lower.array() <= upper.array()).all();
@@ -27,6 +28,7 @@ struct Aabb {
 class BroadPhase {
  public:
   virtual ~BroadPhase() = default;
+  /// As the registry knows it.
   [[nodiscard]] virtual std::string_view name() const = 0;
   /// Registers or moves a body; `swept` contains its shape during its current motion.
   virtual void update(BodyIndex body, const Aabb& swept) = 0;

@@ -19,7 +19,9 @@ struct SineCosine {
 
 /// x in rad; not a number where x is not finite.
 [[nodiscard]] SineCosine sine_cosine(double x);
+/// x in rad; not a number where x is not finite.
 [[nodiscard]] double sine(double x);
+/// x in rad; not a number where x is not finite.
 [[nodiscard]] double cosine(double x);
 
 /// The length of (x, y), within 1 unit in the last place where no square over- or underflows.

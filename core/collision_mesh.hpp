@@ -12,16 +12,23 @@ inline namespace core {
 /// by threads. Vertices 24, triangles 12, tree 40 bytes each: 64 bytes a triangle of a closed mesh.
 class CollisionMesh {
  public:
+  /// What the triangles mean.
   enum class Kind : std::uint8_t {
     surface,  ///< any triangles; what lies inside does not touch
     solid     ///< what they enclose: closed and oriented, checked; throws `InputError` otherwise
   };
 
+  /// Builds the tree. Throws `InputError` as `build_obb_tree` does, and for a solid that is not
+  /// closed.
   explicit CollisionMesh(MeshData data, Kind kind = Kind::surface);
 
+  /// Frame of the mesh, m.
   [[nodiscard]] const std::vector<Vector3>& vertices() const { return data_.vertices; }
+  /// Corners by their places in `vertices()`, counterclockwise seen from outside.
   [[nodiscard]] const std::vector<Triangle>& triangles() const { return data_.triangles; }
+  /// Boxes around the triangles.
   [[nodiscard]] const ObbTree& tree() const { return tree_; }
+  /// Whether the triangles bound a solid.
   [[nodiscard]] bool solid() const { return kind_ == Kind::solid; }
   /// Of a solid: a vertex of each part of its surface that hangs together.
   [[nodiscard]] const std::vector<std::uint32_t>& part_vertices() const { return part_vertices_; }

@@ -12,6 +12,7 @@ enum class Combine {
   minimum,         ///< min(x_a, x_b)
 };
 inline constexpr std::string_view combine_names[] = {"product", "geometric-mean", "minimum"};
+/// As scene files say it.
 [[nodiscard]] constexpr std::string_view to_string(Combine how) {
   return combine_names[static_cast<int>(how)];
 }

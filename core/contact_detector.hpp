@@ -33,6 +33,7 @@ struct BallFlight {
   double radius = 0.0;  ///< error radius included, m
 };
 
+/// What a detector is, and what it can do.
 struct DetectorInfo {
   std::string_view name;
   bool locates = false;  ///< answers `time_of_impact` with a time, not only with yes or no
@@ -48,6 +49,7 @@ struct DetectorInfo {
 class ContactDetector {
  public:
   virtual ~ContactDetector() = default;
+  /// The same for the whole life of the detector.
   [[nodiscard]] virtual DetectorInfo info() const = 0;
 
   /// Do they overlap at these poses? Only the boolean: the cheap question of every frame.

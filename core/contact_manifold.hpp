@@ -13,6 +13,7 @@ inline namespace core {
 struct ContactManifold {
   /// Of two faces of boxes: a quadrilateral clipped by four planes.
   static constexpr std::size_t most_points = 8;
+  /// One point of the patch.
   struct Point {
     Vector3 position = Vector3::Zero();  ///< halfway between both surfaces, world frame, m
     double gap = 0.0;                    ///< along the normal, m; negative: penetration
@@ -26,6 +27,7 @@ struct ContactManifold {
   bool face_of_a = false;
   bool face_of_b = false;
 
+  /// Adds a point (world frame, m) and its signed gap (m), while there is room.
   void add(const Vector3& position, double gap) {
     if (size < most_points) {
       points[size++] = {position, gap};

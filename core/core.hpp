@@ -37,3 +37,9 @@
 #include "core/stepper.hpp"
 #include "core/time_of_impact.hpp"
 #include "core/trajectory.hpp"
+
+/// What happens between two frames, and what does it cost to know? SI units; y is up.
+namespace kairos {}
+/// The world and the clock: scenes, models, motions, schemes, and the ports that other rooms
+/// implement.
+namespace kairos::inline core {}

@@ -14,6 +14,7 @@ class Drive {
   /// The motion from t on, lasting at most `at_most` s, shorter where a knot comes first (a sample
   /// of a recording, where velocity may jump; the end of a polynomial fit). Never of length 0.
   [[nodiscard]] virtual Motion motion(Instant t, double at_most) const = 0;
+  /// For people: what moves the body, and how.
   [[nodiscard]] virtual std::string description() const = 0;
   /// Whether its velocity never jumps, so that a joint can follow it.
   [[nodiscard]] virtual bool smooth() const { return true; }

@@ -27,11 +27,13 @@ enum class EnergyLine : std::size_t {
   projection,           ///< impulses that put velocities back to constraints: p.(u- + u+)/2
 };
 inline constexpr std::size_t energy_line_count = 12;
+/// As the columns of `energy.csv` say it.
 [[nodiscard]] std::string_view to_string(EnergyLine line);
 
 /// Sum that does not lose its small terms [Neumaier1974].
 class CompensatedSum {
  public:
+  /// Adds a term.
   void add(double x) {
     const double t = sum_ + x;
     correction_ += std::abs(sum_) >= std::abs(x) ? (sum_ - t) + x : (x - t) + sum_;
@@ -43,7 +45,9 @@ class CompensatedSum {
     add(product);
     correction_ += std::fma(a, b, -product);
   }
+  /// The sum so far.
   [[nodiscard]] double value() const { return sum_ + correction_; }
+  /// Writes it to a checkpoint, or reads it back.
   void persist(Archive& archive);
 
  private:
@@ -61,6 +65,7 @@ class EnergyLedger {
     kinetic_ = kinetic;
     potential_ = potential;
   }
+  /// Books energy that entered the bodies, J; a loss is negative.
   void add(EnergyLine line, double joules) {
     lines_[static_cast<std::size_t>(line)].add(joules);
     flow_.add(std::abs(joules));
@@ -69,10 +74,15 @@ class EnergyLedger {
   /// given back, for the scale of roundoff.
   void exchange(double joules) { flow_.add(std::abs(joules)); }
 
+  /// As last told, J.
   [[nodiscard]] double kinetic() const { return kinetic_; }
+  /// As last told, J.
   [[nodiscard]] double potential() const { return potential_; }
+  /// As last told, kinetic and potential, J.
   [[nodiscard]] double energy() const { return kinetic_ + potential_; }
+  /// With which the ledger was opened, J.
   [[nodiscard]] double initial_energy() const { return initial_kinetic_ + initial_potential_; }
+  /// What has been booked on a line, J.
   [[nodiscard]] double line(EnergyLine line) const {
     return lines_[static_cast<std::size_t>(line)].value();
   }
@@ -83,6 +93,7 @@ class EnergyLedger {
   [[nodiscard]] double flow() const { return flow_.value(); }
   /// What no line explains; a test holds it below 8 eps of `flow()`.
   [[nodiscard]] double unexplained() const;
+  /// Writes it to a checkpoint, or reads it back.
   void persist(Archive& archive);
 
  private:

@@ -37,6 +37,7 @@ struct Nudge {
   double along_change = 0.0;    ///< times scale (v' - v): 13.7 takes the difference first
   double along_velocity = 0.0;  ///< times scale v': the prose of 7.4
 
+  /// Whether it changes nothing.
   [[nodiscard]] bool none() const { return along_change == 0.0 && along_velocity == 0.0; }
 };
 
@@ -62,8 +63,11 @@ struct TrackerMemory {
 class Entity {
  public:
   virtual ~Entity() = default;
+  /// As scene files say it.
   [[nodiscard]] virtual std::string_view kind() const = 0;
+  /// The thesis' word for it.
   [[nodiscard]] virtual PhysicsType physics_type() const = 0;
+  /// What moves it: nothing, a drive, or forces and impacts.
   [[nodiscard]] virtual Mobility mobility() const = 0;
   /// A surface that reflects what hits it (13.5: `stationary()`).
   [[nodiscard]] virtual bool stationary() const { return false; }
@@ -114,7 +118,6 @@ struct EntityType {
   std::string_view summary;
   std::string_view source;  ///< section of the thesis, or "ours"
   Mobility mobility = Mobility::fixed;
-  bool default_solid = true;
   std::vector<EntityKey> keys;
   /// Values in the order of `keys`.
   std::function<std::shared_ptr<const Entity>(std::span<const double> values)> make;

@@ -13,9 +13,13 @@ class InputError : public std::runtime_error {
   /// `line` 0 means the whole file; an empty `file` or `key` is left out of the message.
   InputError(std::string file, int line, std::string key, std::string reason);
 
+  /// Where it was written; empty: in no file.
   [[nodiscard]] const std::string& file() const { return file_; }
+  /// The line of the file, from 1; 0: the whole file.
   [[nodiscard]] int line() const { return line_; }
+  /// What is wrong: a key, an option; may be empty.
   [[nodiscard]] const std::string& key() const { return key_; }
+  /// What is wrong with it, and what is allowed.
   [[nodiscard]] const std::string& reason() const { return reason_; }
 
  private:

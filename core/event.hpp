@@ -9,6 +9,7 @@
 namespace kairos {
 inline namespace core {
 
+/// What happened between two bodies.
 enum class EventKind {
   impact,          ///< two solids met and the impact law was applied
   contact_begins,  ///< a body comes to rest on a surface
@@ -21,6 +22,7 @@ enum class EventKind {
   stick_begins,  ///< they stop sliding: friction holds them
   roll_begins,   ///< a ball stops sliding: it rolls
 };
+/// As `events.csv` says it.
 [[nodiscard]] std::string_view to_string(EventKind kind);
 
 /// How well the end of a contact mode was located.
@@ -29,6 +31,7 @@ enum class Grade {
   enclosed,  ///< proven by intervals
   sampled,   ///< looked for at so many points, then bisected
 };
+/// As `events.csv` says it.
 [[nodiscard]] std::string_view to_string(Grade grade);
 
 /// Something that happened between two bodies.

@@ -7,6 +7,7 @@ inline namespace core {
 // everywhere, as those of core/circular.hpp. Within 0.52 units in the last place of the truth,
 // where the result is neither subnormal nor infinite.
 
+/// e to the power x; infinity where that is beyond the doubles.
 [[nodiscard]] double exponential(double x);
 /// Natural; minus infinity at 0, not a number below.
 [[nodiscard]] double logarithm(double x);

@@ -18,6 +18,7 @@ struct Wrench {
   Vector3 force = Vector3::Zero();
   Vector3 torque = Vector3::Zero();
 
+  /// Writes it to a checkpoint, or reads it back.
   void persist(Archive& archive);
 };
 
@@ -57,6 +58,7 @@ class Force {
   /// N, on each of its bodies, of a force that is the same whatever state and time, through the
   /// origin and of potential -F.p: it leaves motions closed-form. nullopt otherwise.
   [[nodiscard]] virtual std::optional<Vector3> uniform() const { return std::nullopt; }
+  /// For people: what it is, and on whom.
   [[nodiscard]] virtual std::string description() const = 0;
 };
 

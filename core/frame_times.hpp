@@ -9,6 +9,7 @@
 namespace kairos {
 inline namespace core {
 
+/// All frames take the same time.
 struct FixedFrames {
   double duration = 1.0 / 60.0;  ///< s
 };

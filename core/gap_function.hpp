@@ -12,6 +12,7 @@ inline namespace core {
 class GapFunction {
  public:
   virtual ~GapFunction() = default;
+  /// How many pairs there are.
   [[nodiscard]] virtual std::size_t size() const = 0;
   /// Signed gap per pair (m; negative: overlapping) at time t for these states of the island.
   virtual void evaluate(Instant t, std::span<const BodyState> states,

@@ -32,6 +32,7 @@ struct ImpactEnergy {
   double impact_friction = 0.0;    ///< <= 0: what tangential impulses took
 };
 
+/// What an impact law is, and what it can do.
 struct LawInfo {
   std::string_view name;
   bool needs_contact = false;  ///< uses the contact's point and normal
@@ -46,6 +47,7 @@ struct LawInfo {
 class ImpactLaw {
  public:
   virtual ~ImpactLaw() = default;
+  /// The same for the whole life of the law.
   [[nodiscard]] virtual LawInfo info() const = 0;
   /// Changes the velocities (and, for the thesis' nudge, positions) and net forces of both.
   virtual ImpactEnergy apply(const Contact& contact, ImpactBody a, ImpactBody b) const = 0;

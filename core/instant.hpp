@@ -16,6 +16,7 @@ struct Instant {
   double seconds = 0.0;     ///< the instant rounded to a double, s
   double correction = 0.0;  ///< what that rounding lost, s
 
+  /// Later than all instants that come.
   static constexpr Instant never() { return {std::numeric_limits<double>::infinity(), 0.0}; }
 
   /// The instant `duration` seconds later; `duration` may be negative or infinite.
@@ -30,11 +31,13 @@ struct Instant {
     const double high = sum + low;
     return {high, low - (high - sum)};
   }
+  /// The instant `duration` seconds earlier.
   friend constexpr Instant operator-(Instant t, double duration) { return t + (-duration); }
   /// Seconds from `earlier` to `later`, rounded once.
   friend constexpr double operator-(Instant later, Instant earlier) {
     return (later.seconds - earlier.seconds) + (later.correction - earlier.correction);
   }
+  /// The order of time.
   // clang-tidy 14 takes it for a comparison with 0.
   friend constexpr auto operator<=>(Instant, Instant) = default;  // NOLINT(modernize-use-nullptr)
 };

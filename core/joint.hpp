@@ -21,6 +21,7 @@ enum class JointKind {
 };
 inline constexpr std::array<std::string_view, 5> joint_kind_names{"ball", "hinge", "slider", "rod",
                                                                   "weld"};
+/// As scene files say it.
 [[nodiscard]] constexpr std::string_view to_string(JointKind kind) {
   return joint_kind_names[static_cast<std::size_t>(kind)];
 }
@@ -63,12 +64,14 @@ struct JointRow {
   double bias = 0.0;      ///< m/s^2 or 1/s^2
   bool turns_only = false;
 
+  /// r' for these velocities of the two sides, m/s or 1/s.
   [[nodiscard]] double rate(const Twist& a, const Twist& b) const {
     return direction.dot(b.linear - a.linear) + turn_b.dot(b.angular) - turn_a.dot(a.angular);
   }
 };
 
 inline constexpr std::size_t most_joint_rows = 6;
+/// How many rows a joint of this kind has.
 [[nodiscard]] std::size_t row_count(JointKind kind);
 /// Whether it does anything to the orientation of that side's body.
 [[nodiscard]] bool turns(const Joint& joint, const JointSide& side);

@@ -11,6 +11,7 @@ inline namespace core {
 /// A mesh as a body: its triangles and their tree, about the body's origin and axes. It *is* the
 /// triangles of the vertices as they are stored.
 struct MeshBody {
+  /// The triangles alone, without sizes: see `solid_body` and `mesh_in_place`.
   explicit MeshBody(MeshData data, CollisionMesh::Kind kind) : mesh(std::move(data), kind) {}
 
   CollisionMesh mesh;

@@ -17,8 +17,10 @@ enum class MeshDefectKind {
   non_manifold,  ///< an edge of it has more than two
   contrary,      ///< the triangle on the other side of an edge is turned the other way
 };
+/// For messages.
 [[nodiscard]] std::string_view to_string(MeshDefectKind kind);
 
+/// What is wrong with a mesh as the surface of a solid, and where.
 struct MeshDefect {
   MeshDefectKind kind = MeshDefectKind::degenerate;
   std::uint32_t triangle = 0;

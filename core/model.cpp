@@ -238,7 +238,7 @@ Decision Model::choose_broad_phase() {
     broad_phase_ = options_.broad_phase;
     return {"broad phase", std::string(broad_phase_), "it was asked for"};
   }
-  broad_phase_ = size() <= few ? "all-pairs" : "cells";
+  broad_phase_ = size() <= few ? every_pair : "cells";
   return {"broad phase", std::string(broad_phase_),
           fmt::format("{} bodies: {}", size(),
                       size() <= few ? "asking every pair costs least"

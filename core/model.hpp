@@ -41,15 +41,25 @@ class Model {
   /// who have a detector.
   explicit Model(Scene scene, const ModelOptions& options = {});
 
+  /// As it was given.
   [[nodiscard]] const Scene& scene() const { return scene_; }
+  /// As they were given.
   [[nodiscard]] const ModelOptions& options() const { return options_; }
+  /// How many bodies there are; i, a, b below are less than this.
   [[nodiscard]] std::size_t size() const { return scene_.bodies.size(); }
+  /// As it was given.
   [[nodiscard]] const Body& body(BodyIndex i) const { return scene_.bodies[i]; }
+  /// What it is in the thesis' taxonomy.
   [[nodiscard]] const Entity& entity(BodyIndex i) const { return *scene_.bodies[i].entity; }
+  /// What it collides as.
   [[nodiscard]] const Shape& shape(BodyIndex i) const { return shapes_[i]; }
+  /// What moves it.
   [[nodiscard]] Mobility mobility(BodyIndex i) const { return mobility_[i]; }
+  /// Whether forces and impacts move it.
   [[nodiscard]] bool is_free(BodyIndex i) const { return mobility_[i] == Mobility::free; }
+  /// Whether its orientation is followed.
   [[nodiscard]] bool rotates(BodyIndex i) const { return rotates_[i]; }
+  /// Whether it acts on what overlaps it, and is not solid.
   [[nodiscard]] bool is_field(BodyIndex i) const { return roles_[i].field; }
   /// Inertia as islands and impact laws see it; mass -1 for bodies that are not free.
   [[nodiscard]] const BodyInertia& inertia(BodyIndex i) const { return inertia_[i]; }
@@ -70,6 +80,7 @@ class Model {
   /// Pairs to test, in the order of creation: those that can ever interact; with `prune_pairs` off
   /// all pairs, of which still only those do anything to each other that `interacts`.
   [[nodiscard]] const BodyPairs& pairs() const { return pairs_; }
+  /// Whether a and b can ever do anything to each other.
   [[nodiscard]] bool interacts(BodyIndex a, BodyIndex b) const {
     return a != b && interaction(roles_[a], roles_[b]) && !pairs_.kept_apart(a, b);
   }
@@ -89,12 +100,10 @@ class Model {
   /// True if it would but for a body that can tumble: a free top between impacts, which has a
   /// closed form of its own (elliptic functions).
   [[nodiscard]] bool tumbles(std::size_t island) const { return tumbles_[island]; }
-  /// Name of the integrator that `auto` takes for this island.
-  [[nodiscard]] std::string_view integrator(std::size_t island) const {
-    return closed_form_[island] || tumbles_[island] ? "closed-form" : "dopri5";
-  }
   /// Name of the broad phase that the scene needs.
   [[nodiscard]] std::string_view broad_phase() const { return broad_phase_; }
+  /// Whether that asks every pair, so that nobody has to be found.
+  [[nodiscard]] bool asks_every_pair() const { return broad_phase_ == every_pair; }
 
   /// Hands and what they hold, in the order of creation of the hands.
   [[nodiscard]] const std::vector<Grip>& grips() const { return grips_; }
@@ -105,8 +114,10 @@ class Model {
   [[nodiscard]] double gravity_potential(BodyIndex i, const Vector3& position) const {
     return -gravity_force_[i].dot(position);
   }
+  /// Kinetic energy of body i, J; 0 for bodies that are not free.
   [[nodiscard]] double kinetic_energy(BodyIndex i, const BodyState& state) const;
 
+  /// What was decided, and why: what `kairos explain` prints.
   [[nodiscard]] const std::vector<Decision>& decisions() const { return decisions_; }
 
  private:
@@ -146,7 +157,8 @@ class Model {
   std::vector<Grip> grips_;
   std::vector<bool> closed_form_;
   std::vector<bool> tumbles_;
-  std::string_view broad_phase_ = "all-pairs";
+  static constexpr std::string_view every_pair = "all-pairs";
+  std::string_view broad_phase_ = every_pair;
   std::vector<Decision> decisions_;
 };
 

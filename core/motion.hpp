@@ -42,9 +42,13 @@ struct Motion {
   static Motion ballistic(Instant start, double duration, const Pose& pose, const Twist& twist,
                           const Vector3& acceleration);
 
+  /// Absolute time of s = `duration`.
   [[nodiscard]] Instant end() const { return start + duration; }
+  /// At local time s (s), 0 <= s <= `duration`.
   [[nodiscard]] Pose pose(double s) const;
+  /// q_WB at local time s (s), unit.
   [[nodiscard]] Quaternion orientation(double s) const;
+  /// At local time s (s), world frame.
   [[nodiscard]] Twist twist(double s) const;
   /// Acceleration of the origin: the derivative of `velocity`, m/s^2.
   [[nodiscard]] Vector3 acceleration(double s) const { return velocity.derivative(s); }
@@ -68,8 +72,10 @@ template <int Dim>
 void bernstein(const Polynomial<Dim>& p, double s0, double s1,
                std::array<typename Polynomial<Dim>::Value, Polynomial<Dim>::max_degree + 1>& out);
 
+/// Compiled once, in core/motion.cpp.
 extern template void bernstein<3>(const Polynomial<3>&, double, double,
                                   std::array<Polynomial<3>::Value, Polynomial<3>::max_degree + 1>&);
+/// Compiled once, in core/motion.cpp.
 extern template void bernstein<4>(const Polynomial<4>&, double, double,
                                   std::array<Polynomial<4>::Value, Polynomial<4>::max_degree + 1>&);
 

@@ -14,9 +14,13 @@ inline namespace core {
 class ObbChild {
  public:
   ObbChild() = default;
+  /// Node i of the tree.
   [[nodiscard]] static ObbChild node(std::uint32_t i) { return ObbChild(i); }
+  /// Triangle i of the mesh.
   [[nodiscard]] static ObbChild triangle(std::uint32_t i) { return ObbChild(i | leaf_bit); }
+  /// Whether it is a triangle.
   [[nodiscard]] bool is_triangle() const { return (code_ & leaf_bit) != 0; }
+  /// The i of the node or triangle.
   [[nodiscard]] std::uint32_t index() const { return code_ & ~leaf_bit; }
   /// Any order that is the same everywhere.
   friend auto operator<=>(const ObbChild&, const ObbChild&) = default;
@@ -46,6 +50,7 @@ struct ObbBox {
   Vector3 centre;
   Vector3 half_extents;
 };
+/// The box of a node, frame of the mesh.
 [[nodiscard]] ObbBox box_of(const ObbNode& node);
 
 /// Oriented boxes around ever fewer triangles of a mesh [Gottschalk1996]: axes from the covariance

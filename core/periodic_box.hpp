@@ -13,7 +13,9 @@ struct Scene;
 /// Which copy of a body is meant: so many boxes further along each axis.
 using Image = std::array<std::int32_t, 3>;
 
+/// Whether it is the body itself.
 [[nodiscard]] constexpr bool is_zero(const Image& n) { return n == Image{}; }
+/// The way back.
 [[nodiscard]] constexpr Image operator-(const Image& n) { return {-n[0], -n[1], -n[2]}; }
 
 /// A box that is repeated without end along some of its axes: what leaves it on one side comes in

@@ -13,14 +13,18 @@ inline namespace core {
 template <int Dim>
 class Polynomial {
  public:
+  /// A coefficient, or a value.
   using Value = Eigen::Matrix<double, Dim, 1, Eigen::DontAlign>;
   static constexpr int max_degree = 13;  ///< Adams-Moulton of order 12 and its integral
 
   Polynomial() { coefficients_[0].setZero(); }
   template <typename... Values>
+  /// c0 + c1 s + ...; at most `max_degree` + 1 coefficients.
   explicit Polynomial(const Value& c0, const Values&... higher)
       : degree_(static_cast<int>(sizeof...(higher))), coefficients_{c0, Value(higher)...} {}
+  /// Copies the coefficients in use.
   Polynomial(const Polynomial& other) { *this = other; }
+  /// Copies the coefficients in use.
   Polynomial& operator=(const Polynomial& other) {
     degree_ = other.degree_;
     for (int k = 0; k <= degree_; ++k) {
@@ -30,8 +34,11 @@ class Polynomial {
   }
   ~Polynomial() = default;
 
+  /// Of the coefficients in use; the highest may be 0.
   [[nodiscard]] int degree() const { return degree_; }
+  /// c_k, 0 <= k <= `degree()`.
   [[nodiscard]] const Value& operator[](int k) const { return coefficients_[index(k)]; }
+  /// c_k, 0 <= k <= `degree()`.
   [[nodiscard]] Value& operator[](int k) { return coefficients_[index(k)]; }
   /// Changes the degree; coefficients that appear are zero.
   void resize(int degree) {

@@ -15,10 +15,13 @@ struct IndexRows {
   std::vector<std::uint32_t> start{0};
   std::vector<std::uint32_t> items;
 
+  /// Row i < `size()`.
   [[nodiscard]] std::span<const std::uint32_t> operator[](std::size_t i) const {
     return std::span(items).subspan(start[i], start[i + 1] - start[i]);
   }
+  /// How many rows there are.
   [[nodiscard]] std::size_t size() const { return start.size() - 1; }
+  /// Appends a row.
   void add(std::span<const std::uint32_t> row) {
     items.insert(items.end(), row.begin(), row.end());
     start.push_back(static_cast<std::uint32_t>(items.size()));

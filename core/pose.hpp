@@ -8,7 +8,9 @@ namespace kairos {
 /// while the other rooms keep theirs (`kairos::ccd`, `kairos::integrators`, `kairos::experiments`).
 inline namespace core {
 
+/// A point, a direction or a rate in space.
 using Vector3 = Eigen::Vector3d;
+/// A rotation or a tensor in space.
 using Matrix3 = Eigen::Matrix3d;
 /// Unaligned on purpose: the layout of public types must not depend on the consumer's `-march`.
 using Vector4 = Eigen::Matrix<double, 4, 1, Eigen::DontAlign>;
@@ -21,9 +23,11 @@ struct Pose {
   Vector3 position = Vector3::Zero();               ///< p_WB, m
   Quaternion orientation = Quaternion::Identity();  ///< q_WB, unit
 
+  /// A point of the body, told in the world frame, m.
   [[nodiscard]] Vector3 to_world(const Vector3& point_B) const {
     return position + orientation * point_B;
   }
+  /// A point of the world, told in the body frame, m.
   [[nodiscard]] Vector3 to_body(const Vector3& point_W) const {
     return orientation.conjugate() * (point_W - position);
   }

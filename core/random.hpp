@@ -33,6 +33,7 @@ inline namespace core {
 /// between platforms. `Random(seed, stream)` starts at index 0 of one of 2^64 independent streams.
 class Random {
  public:
+  /// Streams of one seed are independent; `index` is where in its stream it begins.
   explicit Random(std::uint64_t seed, std::uint64_t stream = 0, std::uint64_t index = 0)
       : seed_(seed), stream_(stream), index_(index) {}
 

@@ -15,6 +15,7 @@ class Archive;
 
 /// What a scheme does in a frame, for the flow diagrams of figs. 7 and 15.
 enum class Stage { draw, calculate_positions, restrict_movement, detect, handle, advance, locate };
+/// As the flow diagrams say it.
 [[nodiscard]] std::string_view to_string(Stage stage);
 
 /// A rendered frame: the world as a person sees it.
@@ -33,13 +34,16 @@ struct Frame {
 class Recorder {
  public:
   virtual ~Recorder() = default;
+  /// Once, before anything else; the model outlives the run.
   virtual void begin(const Model& /*model*/) {}
   /// Whether `motion` is of interest: schemes that need none for themselves then make none.
   [[nodiscard]] virtual bool wants_motions() const { return false; }
+  /// A frame is drawn: at the start, after each frame, at the end.
   virtual void frame(const Frame& /*frame*/) {}
   /// Body `body` moves like this; a later motion of the same body ends it earlier, if it starts
   /// before this one ends.
   virtual void motion(BodyIndex /*body*/, const Motion& /*motion*/) {}
+  /// Something happened between two bodies.
   virtual void event(const Event& /*event*/) {}
   /// A stage of the flow of events; `fraction` of the frame done (fig. 15).
   virtual void stage(Stage /*stage*/, double /*fraction*/) {}

@@ -21,6 +21,7 @@ inline namespace core {
 
 /// What a body collides as: itself, the box around it, or its convex hull.
 enum class Bounds { shape, obb, hull };
+/// As scene files say it.
 [[nodiscard]] std::string_view to_string(Bounds bounds);
 /// What the number G of a body is: an acceleration (m/s^2), or the thesis' force (N).
 enum class GravityMode { acceleration, force };

@@ -19,14 +19,16 @@ namespace kairos {
 inline namespace core {
 
 /// Makes the stepper of an island: the one that was named, or what the `Model` chooses (`auto`).
-using IslandStepper = std::function<std::unique_ptr<Stepper>(const Model&, std::size_t island)>;
+using IslandStepperFactory =
+    std::function<std::unique_ptr<Stepper>(const Model&, std::size_t island)>;
 /// The box that a shape sweeps over a window of its motion, error radius included.
 using SweptBounds = std::function<Aabb(const MovingShape&, const Window&)>;
+/// Makes a broad phase for that many bodies.
 using BroadPhaseFactory = std::function<std::unique_ptr<BroadPhase>(std::size_t bodies)>;
 
 /// The three choices beside the scheme. Nothing here knows of any other.
 struct Method {
-  IslandStepper stepper;
+  IslandStepperFactory stepper;
   std::shared_ptr<const ContactDetector> detector;
   std::shared_ptr<const ImpactLaw> law;
   BroadPhaseFactory broad_phase;
@@ -37,6 +39,7 @@ struct Method {
   std::function<std::unique_ptr<Stepper>(double first_step)> contact_stepper = {};
 };
 
+/// What a run is told beside its method; `simulation/option.cpp` has ranges and meanings.
 struct SchemeOptions {
   FrameTimes frames;            ///< how long rendered frames take
   double duration = 10.0;       ///< s
@@ -64,14 +67,17 @@ struct Cost {
   std::int64_t impacts = 0;
   std::int64_t events = 0;
 
+  /// Writes it to a checkpoint, or reads it back.
   void persist(Archive& archive);
 };
 
+/// How a run ended.
 enum class RunStatus {
   completed,
   stopped,  ///< before its end, with a reason; what was recorded is valid
 };
 
+/// What a run came to.
 struct RunResult {
   RunStatus status = RunStatus::completed;
   std::string reason;  ///< of a stop: `accumulation: ...`, `still approaching: ...`
@@ -81,6 +87,7 @@ struct RunResult {
   Cost cost;
 };
 
+/// What a scheme is, and what it can do.
 struct SchemeInfo {
   std::string_view name;
   std::string_view summary;
@@ -98,6 +105,7 @@ struct SchemeInfo {
 class Scheme {
  public:
   virtual ~Scheme() = default;
+  /// The same for the whole life of the scheme.
   [[nodiscard]] virtual SchemeInfo info() const = 0;
   /// Why it cannot run this combination on this model; empty if it can.
   [[nodiscard]] virtual std::string refuses(const Model& model, const Method& method,

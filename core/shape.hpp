@@ -67,6 +67,7 @@ using Shape = std::variant<Sphere, Box, HalfSpace, Capsule, Cylinder, Cone, Hull
   return rank[shape.index()];
 }
 
+/// As scene files say it.
 [[nodiscard]] std::string_view shape_name(const Shape& shape);
 /// Radius of the smallest ball around the origin that contains the shape, m (infinite: half-space).
 [[nodiscard]] double bounding_radius(const Shape& shape);

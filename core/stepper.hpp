@@ -14,6 +14,7 @@ inline namespace core {
 
 class Archive;
 
+/// What a stepper is, and what it can do.
 struct StepperInfo {
   std::string_view name;
   int order = 0;           ///< of the step, for smooth forces; 0: exact
@@ -27,6 +28,7 @@ struct StepperInfo {
   bool variable_order = false;
 };
 
+/// What a step came to.
 struct StepResult {
   double advanced = 0.0;  ///< s; less than asked for only by controlled steppers, never 0 if ok
   double error = 0.0;     ///< estimated local error, in units of the tolerance; 0: none
@@ -56,6 +58,7 @@ struct ReplayedStep {
 class Stepper {
  public:
   virtual ~Stepper() = default;
+  /// What it is now: a closed form that gave up tells another order.
   [[nodiscard]] virtual StepperInfo info() const = 0;
 
   /// Whether it can advance this island at all; a non-empty string is the reason why not.

@@ -7,6 +7,7 @@
 namespace kairos {
 inline namespace core {
 
+/// What is known of two shapes in a window.
 enum class ToiStatus {
   separated,    ///< no contact in the window (proven, if the detector proves)
   impact,       ///< contact by t_hi; none before t_lo
@@ -17,6 +18,7 @@ enum class ToiStatus {
   /// goes on from there.
   undecided,
 };
+/// As `kairos toi` says it.
 [[nodiscard]] std::string_view to_string(ToiStatus status);
 
 /// When two moving shapes first touch. Times are local: seconds from the start of the window.

@@ -55,6 +55,7 @@ struct Option {
 /// name, a value of the wrong kind or out of range, frame jitter without a frame.
 void set_option(RunChoice& choice, std::string_view name, const OptionValue& value);
 
+/// The name of an option and what it is set to.
 using OptionSetting = std::pair<std::string, OptionValue>;
 /// Sets several, whatever their order: of one name the last counts.
 void set_options(RunChoice& choice, std::span<const OptionSetting> settings);

@@ -24,7 +24,7 @@ bool held(BodyIndex a, BodyIndex b, std::span<const char> in_hand) {
 
 PenetrationProbe::PenetrationProbe(const Model& model)
     : model_(model), detector_(find_detector("certified")), bounds_(swept_bounds()) {
-  if (model.broad_phase() != "all-pairs") {
+  if (!model.asks_every_pair()) {
     boxes_ = std::make_unique<ccd::ImageBoxes>(model,
                                                find_broad_phase(model.broad_phase())(model.size()));
   }

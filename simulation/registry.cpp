@@ -144,20 +144,23 @@ std::shared_ptr<const ImpactLaw> find_impact_law(std::string_view name) {
   return find("impact law", name, impact_laws());
 }
 
-IslandStepper find_integrator(std::string_view name, const StepperOptions& options) {
+IslandStepperFactory find_integrator(std::string_view name, const StepperOptions& options) {
   if (name == "auto") {
     return [options](const Model& model, std::size_t island) {
-      if (model.tumbles(island)) {
-        return integrators::make_closed_form_or(find_entry("dopri5").make(options));
+      if (model.closed_form(island)) {
+        return find_entry("closed-form").make(options);
       }
-      return find_entry(model.integrator(island)).make(options);
+      std::unique_ptr<Stepper> stepper = find_entry("dopri5").make(options);
+      return model.tumbles(island) ? integrators::make_closed_form_or(std::move(stepper))
+                                   : std::move(stepper);
     };
   }
   return
       [make = find_entry(name).make, options](const Model&, std::size_t) { return make(options); };
 }
 
-IslandStepper find_watching_integrator(std::string_view name, const StepperOptions& options) {
+IslandStepperFactory find_watching_integrator(std::string_view name,
+                                              const StepperOptions& options) {
   const auto make = find_entry(name == "auto" ? rootfinding_integrator : name).make;
   return [make, options](const Model& model, std::size_t island) {
     std::unique_ptr<Stepper> stepper = make(options);

@@ -16,7 +16,9 @@ struct RunMetrics {
     std::optional<BodyPair> pair;  ///< none: nothing penetrates
     double time = 0.0;             ///< s
 
+    /// Keeps a depth (m) of a pair if it is greater than all so far.
     void look(double found, BodyPair of, Instant t);
+    /// Writes it to a checkpoint, or reads it back.
     void persist(Archive& archive);
   };
 
@@ -31,7 +33,9 @@ struct RunMetrics {
   /// energy of a drawn frame.
   double energy_scale = 0.0;
 
+  /// Writes it to a checkpoint, or reads it back.
   void persist(Archive& archive);
+  /// The greater of both.
   [[nodiscard]] const Deepest& deepest() const {
     return in_impacts.depth > in_frames.depth ? in_impacts : in_frames;
   }
@@ -54,6 +58,7 @@ class MetricsRecorder : public Recorder {
   void event(const Event& event) override;
   bool persist(Archive& archive) override;
 
+  /// Of what has been recorded so far.
   [[nodiscard]] const RunMetrics& metrics() const { return metrics_; }
 
  private:

@@ -18,9 +18,12 @@ inline namespace simulation {
 /// of numbers or vector, a table of keys.
 class KeyValue {
  public:
+  /// A table, as C++ writes it: {{"key", value}, ...}.
   using Keys = std::initializer_list<std::pair<std::string_view, KeyValue>>;
 
+  /// true or false.
   KeyValue(bool value) : data_(value) {}
+  /// A whole number or a number.
   template <typename Number>
   requires std::is_arithmetic_v<Number> KeyValue(Number value) {
     if constexpr (std::is_integral_v<Number>) {
@@ -29,15 +32,21 @@ class KeyValue {
       data_ = static_cast<double>(value);
     }
   }
+  /// A text.
   KeyValue(const char* text) : data_(std::string(text)) {}
+  /// A text.
   KeyValue(std::string text) : data_(std::move(text)) {}
   /// A vector of three, as any expression of Eigen's.
   template <typename Expression>
   KeyValue(const Eigen::MatrixBase<Expression>& v)
       : KeyValue(std::vector<double>{v[0], v[1], v[2]}) {}
+  /// A quaternion as (w, x, y, z).
   KeyValue(const Quaternion& q) : KeyValue(std::vector<double>{q.w(), q.x(), q.y(), q.z()}) {}
+  /// A list of numbers.
   KeyValue(const std::vector<double>& numbers);
+  /// A list of texts.
   KeyValue(const std::vector<std::string>& texts);
+  /// A table.
   KeyValue(Keys keys);
 
   /// As a value of a document without a file.

@@ -51,7 +51,7 @@ struct Continuation {
 /// Plug-ins of one's own, in the place of those that a choice names; null: the named one.
 struct PlugIns {
   std::shared_ptr<const Scheme> scheme = {};
-  IslandStepper integrator = {};  ///< makes a stepper for each island
+  IslandStepperFactory integrator = {};  ///< makes a stepper for each island
   std::shared_ptr<const ContactDetector> detector = {};
   std::shared_ptr<const ImpactLaw> impact = {};
 };
@@ -71,6 +71,7 @@ struct Simulation {
   RunResult result;
   Trajectory trajectory;
 };
+/// Throws `InputError` where the scene or the choice cannot work.
 [[nodiscard]] Simulation simulate(const Scene& scene, const RunChoice& choice = {},
                                   const PlugIns& own = {});
 

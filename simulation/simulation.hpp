@@ -11,3 +11,6 @@
 #include "simulation/scene_library.hpp"
 #include "simulation/simulate.hpp"
 #include "simulation/version.hpp"
+
+/// The library's face: options, registry, scene builder, `simulate`.
+namespace kairos::inline simulation {}

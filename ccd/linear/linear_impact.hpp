@@ -32,6 +32,7 @@ struct LinearImpact {
   LinearStage stage = LinearStage::boxes;
 };
 
+/// When two count as meeting.
 struct LinearOptions {
   /// They meet where their distance is at most this; >= 0, in the unit of the points.
   double separation = 0.0;
@@ -53,6 +54,7 @@ struct LinearQuery {
   FourPoints start, end;
   double separation = 0.0;
 };
+/// `vertex_face` or `edge_edge`, as the query says. Throws as they do.
 [[nodiscard]] LinearImpact linear_impact(const LinearQuery& query);
 /// Answers all, in order; as many answers as queries. Throws as above, at the first bad query.
 void linear_impacts(std::span<const LinearQuery> queries, std::span<LinearImpact> answers);

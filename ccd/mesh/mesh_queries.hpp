@@ -20,9 +20,11 @@ struct MeshCost {
 /// A triangle of each mesh, by their places in `triangles()`.
 struct TrianglePair {
   std::uint32_t a = 0, b = 0;
+  /// By the place of a, then of b.
   friend auto operator<=>(const TrianglePair&, const TrianglePair&) = default;
 };
 
+/// Whether two meshes touch.
 enum class MeshVerdict : std::uint8_t {
   apart,
   touching,  ///< a triangle of each has a point in common
@@ -30,12 +32,14 @@ enum class MeshVerdict : std::uint8_t {
   b_inside
 };
 
+/// Whether two meshes touch, and where.
 struct MeshContact {
   MeshVerdict verdict = MeshVerdict::apart;
   TrianglePair pair;  ///< if they are touching
   MeshCost cost;
 };
 
+/// How far two meshes are apart.
 struct MeshDistance {
   double lower = 0.0, upper = 0.0;  ///< the distance is between these, m; both 0: they touch
   MeshVerdict verdict = MeshVerdict::apart;
@@ -44,8 +48,11 @@ struct MeshDistance {
   MeshCost cost;
 };
 
+/// Whether two meshes are nearer than a tolerance; undecided: their distance is within rounding of
+/// it.
 enum class WithinVerdict : std::uint8_t { within, beyond, undecided };
 
+/// Whether two meshes are nearer than a tolerance.
 struct MeshWithin {
   WithinVerdict verdict = WithinVerdict::beyond;
   MeshDistance distance;  ///< as far as it took to decide

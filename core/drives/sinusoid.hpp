@@ -28,13 +28,11 @@ class Sinusoid : public Drive {
 
   [[nodiscard]] Motion motion(Instant t, double at_most) const override;
   [[nodiscard]] std::string description() const override;
-  /// Longest motion, s.
-  [[nodiscard]] double segment_duration() const { return segment_; }
 
  private:
   Options options_;
   bool turns_;
-  double segment_;
+  double segment_;  ///< longest motion, s
 };
 
 }  // namespace core

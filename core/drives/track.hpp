@@ -22,6 +22,7 @@ struct TrackSample {
 /// first and after the last sample it holds still. Samples are the knots.
 class Track : public Drive {
  public:
+  /// How samples become motions.
   struct Options {
     bool smooth = false;
     double reach = 0.0;            ///< m; no point of the body is farther from its origin
@@ -38,6 +39,7 @@ class Track : public Drive {
   [[nodiscard]] bool smooth() const override { return samples_.size() == 1; }
   [[nodiscard]] bool has_gestures() const override { return options_.gestures; }
   [[nodiscard]] bool closed(Instant t) const override;
+  /// As given, by time.
   [[nodiscard]] const std::vector<TrackSample>& samples() const { return samples_; }
   /// Whether the orientation ever changes.
   [[nodiscard]] bool turns() const;

@@ -30,7 +30,6 @@ EntityType anti_gravity_pad() {
           .summary = "a region where things feel twice the pad's G upwards; nothing bounces off it",
           .source = "5.8, 6.5",
           .mobility = Mobility::fixed,
-          .default_solid = false,
           .keys = {},
           .make = [](std::span<const double>) { return std::make_shared<const AntiGravityPad>(); }};
 }

@@ -15,6 +15,7 @@ inline namespace core {
 /// message can name it. Made by `parse_document`; read through `TableReader`.
 struct Value;
 
+/// Values in order; not all need be of one type.
 using Array = std::vector<Value>;
 
 /// Keys and values in alphabetical order of the keys.
@@ -24,6 +25,7 @@ struct Table {
 
   /// nullptr if there is no such key.
   [[nodiscard]] const Value* find(std::string_view key) const;
+  /// nullptr if there is no such key.
   [[nodiscard]] Value* find(std::string_view key);
   /// Adds or replaces.
   void set(const std::string& key, Value value);
@@ -32,12 +34,15 @@ struct Table {
 /// A date or a time: TOML knows them, no document of ours takes one.
 struct DateOrTime {};
 
+/// A value and where it was written.
 struct Value {
   std::variant<bool, std::int64_t, double, std::string, Array, Table, DateOrTime> data;
   std::shared_ptr<const std::string> file;  ///< never null in a parsed document
   int line = 0;                             ///< 0: not from a line of a file
 
+  /// nullptr if it is no table.
   [[nodiscard]] const Table* table() const { return std::get_if<Table>(&data); }
+  /// nullptr if it is no array.
   [[nodiscard]] const Array* array() const { return std::get_if<Array>(&data); }
   /// "a string", "a whole number", ...: for messages.
   [[nodiscard]] std::string_view type_name() const;

@@ -34,12 +34,14 @@ class MeshBuilder {
 
   /// A vertex, in units of the file. `line` 0: the file is binary.
   void vertex(const Vector3& p, int line);
+  /// How many vertices were told.
   [[nodiscard]] std::size_t vertex_count() const { return file_.mesh.vertices.size(); }
   /// A polygon, as a closed walk over vertices that were told; counterclockwise from outside. It is
   /// divided by cutting ears, in the projection along its largest area.
   void face(std::span<const std::uint32_t> corners, int line);
   /// The next face has a normal in the file: where corners and normal disagree is counted.
   void face_normal(const Vector3& normal) { normal_ = normal; }
+  /// Throws `InputError` with the file, this line (0: none) and the reason.
   [[noreturn]] void fail(int line, const std::string& reason) const;
 
   /// Ends the file: merges vertices with equal coordinates, leaves unused ones out.

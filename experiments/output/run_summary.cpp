@@ -28,7 +28,8 @@ std::string integrators_in_use(const FinishedRun& run) {
       !scheme.integrator.empty()) {
     return std::string(scheme.integrator);
   }
-  const IslandStepper make = find_integrator(run.choice.method.integrator, run.choice.stepper);
+  const IslandStepperFactory make =
+      find_integrator(run.choice.method.integrator, run.choice.stepper);
   std::set<std::string> names;
   for (std::size_t i = 0; i < run.model.islands().size(); ++i) {
     names.emplace(make(run.model, i)->info().name);

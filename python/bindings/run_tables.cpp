@@ -78,7 +78,8 @@ class RowWriter {
 
 /// What `auto` came to: the integrators in use, each once.
 std::string integrators_in_use(const RunRecord& run) {
-  const IslandStepper make = find_integrator(run.choice.method.integrator, run.choice.stepper);
+  const IslandStepperFactory make =
+      find_integrator(run.choice.method.integrator, run.choice.stepper);
   std::set<std::string> names;
   for (std::size_t i = 0; i < run.model->islands().size(); ++i) {
     names.emplace(make(*run.model, i)->info().name);

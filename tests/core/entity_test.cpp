@@ -64,7 +64,7 @@ TEST_CASE("catalogue: every entity is what it says it is", "[entity]") {
     const Body body = make(type.kind, 1.0);
     CHECK(body.entity->kind() == type.kind);
     CHECK(body.entity->mobility() == type.mobility);
-    CHECK(body.entity->is_field() == !type.default_solid);
+    CHECK(body.entity->is_field() == (type.kind == "anti-gravity-pad"));
     CHECK_FALSE(type.summary.empty());
     CHECK_FALSE(type.source.empty());
     for (const EntityKey& key : type.keys) {
