@@ -152,11 +152,11 @@ void EventContacts::touch(BodyIndex a, BodyIndex b, const Contact& contact, Inst
     modes_.bring_group(bodies, t);
     return settle(bodies, t, {.unloaded = true}) ? void() : set_free(bodies, t);
   }
-  if (settle(pair, t, {.pressed = BodyPair{a, b}})) {
+  if (settle(pair, t, {.pressed = BodyPair{a, b}}) || meet_elsewhere(a, b, t)) {
     return;
   }
   if (accumulation_.stalls(a, b, t, least_progress * run_.epoch)) {
-    if (settle(pair, t, {.unloaded = true, .may_turn = true}) || meet_elsewhere(a, b, t)) {
+    if (settle(pair, t, {.unloaded = true, .may_turn = true})) {
       return;
     }
     depart(a, b, t);

@@ -31,6 +31,9 @@ class EventMotions {
   [[nodiscard]] Instant start_of(BodyIndex i) const {
     return whole_.empty() ? bodies_[i].motion.start() : whole_[i].start;
   }
+  [[nodiscard]] double duration_of(BodyIndex i) const {
+    return whole_.empty() ? bodies_[i].motion.duration() : whole_[i].duration;
+  }
   [[nodiscard]] Instant end_of(BodyIndex i) const {
     return whole_.empty() ? bodies_[i].motion.end() : whole_[i].end();
   }

@@ -226,7 +226,12 @@ void EventPredictor::ask(BodyIndex i, const Neighbour& other, Instant from, Inst
   if (motions_.is_supported_by(a, b) || motions_.is_supported_by(b, a) || graph_.joins(a, b)) {
     return;
   }
-  const double duration = std::min({motions_.end_of(a), motions_.end_of(b), run_.epoch_end}) - from;
+  double duration = std::min({motions_.end_of(a), motions_.end_of(b), run_.epoch_end}) - from;
+  for (const BodyIndex k : {a, b}) {  // a step of 1e-22 s is lost beside the time of day
+    if (motions_.start_of(k) == from) {
+      duration = std::min(duration, motions_.duration_of(k));
+    }
+  }
   if (!(duration > 0.0)) {
     return;
   }
