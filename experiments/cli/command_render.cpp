@@ -103,7 +103,7 @@ void add_render_command(Command& app) {
   const auto command = std::make_shared<RenderCommand>();
   Command render = app.add_subcommand("render", "Draw a run as PNG frames, by POV-Ray");
   const auto option = [&render](const char* name, std::optional<std::string>& value,
-                               const char* meaning, const char* type) {
+                                const char* meaning, const char* type) {
     render.add_option(name, value, meaning).type_name(type);
   };
   render
