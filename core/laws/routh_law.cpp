@@ -78,7 +78,10 @@ struct Side {
 Matrix3 contact_axes(const Vector3& n, const Vector3& slip) {
   Matrix3 axes;
   axes.col(0) = n;
-  const Vector3 t = slip - n * n.dot(slip);
+  Vector3 t = slip - n * n.dot(slip);
+  if (t.norm() < 0.1 * slip.norm()) {
+    t -= n * n.dot(t);  // what cancelled is not across n yet: twice is enough [Parlett1980]
+  }
   const double length = t.norm();
   axes.col(1) =
       length > 1e-12 * slip.norm() && length > 0.0 ? Vector3(t / length) : n.unitOrthogonal();
