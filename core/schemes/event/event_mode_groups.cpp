@@ -197,13 +197,14 @@ void EventModes::bring_group(std::span<const BodyIndex> bodies, Instant t) {
 // --- Impacts -----------------------------------------------------------------------------------
 
 /// Within a step of bodies that turn in touch, what holds them is at rest but for what their motion
-/// is off: that is taken out, so that a blow to what rests is no blow to what parts.
-void EventModes::still_hold(const ContactGroup& group, GroupImpact& impact) const {
+/// is off: that is taken out, so that a blow to what rests is no blow to what parts. What parts
+/// faster takes no part in the impact.
+void EventModes::still_hold(ContactGroup& group, GroupImpact& impact) const {
   constexpr double off = 1e-9;  // of the speeds: steps are off by some 1e-12 of them
   ContactSystem held;
   held.bodies = impact.system.bodies;
   for (std::size_t p = 0; p < impact.pairs.size(); ++p) {
-    const GroupPatch& patch = group.patches[p];
+    GroupPatch& patch = group.patches[p];
     const Patch* const joined = graph_.find(impact.pairs[p].first, impact.pairs[p].second);
     if (joined == nullptr || !joined->turns) {
       continue;
@@ -213,9 +214,10 @@ void EventModes::still_hold(const ContactGroup& group, GroupImpact& impact) cons
       const Twist& v = impact.velocities[k];
       speeds += v.linear.norm() + v.angular.norm() * group.radius[k];
     }
+    patch.rest_speed = std::min(patch.rest_speed, off * speeds);
     for (std::size_t k = 0; k < patch.manifold.size; ++k) {
       held.add(patch.a, patch.b, patch.manifold.points[k].position, patch.manifold.normal);
-      if (std::abs(held.rate(held.rows.back(), impact.velocities)) > off * speeds) {
+      if (std::abs(held.rate(held.rows.back(), impact.velocities)) > patch.rest_speed) {
         held.rows.pop_back();
       }
     }

@@ -141,7 +141,7 @@ class EventModes {
   [[nodiscard]] bool has_turned(std::span<const BodyIndex> bodies) const;
   [[nodiscard]] std::string why_not_turn(const Gathered& found, Instant t) const;
   void count_step(const Gathered& found, Instant t);
-  void still_hold(const ContactGroup& group, GroupImpact& impact) const;
+  void still_hold(ContactGroup& group, GroupImpact& impact) const;
   void lift(Gathered& found, Turning& turning);
   void raise(Gathered& found, Turning& turning);
   [[nodiscard]] bool has_room(const Gathered& found, Instant t);
