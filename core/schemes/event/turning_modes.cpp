@@ -208,6 +208,11 @@ std::string EventModes::add_touches(Gathered& found, Turning& turning) const {
     if (!patch.drift.isZero(0.0)) {
       return "a body turns on a belt";
     }
+    // Where a face ends is not watched.
+    if (!std::holds_alternative<HalfSpace>(run_.model.shape(a)) &&
+        !std::holds_alternative<HalfSpace>(run_.model.shape(b))) {
+      return fmt::format("{} touch, one turns, and neither is a half-space", run_.names(a, b));
+    }
     auto corners_a = corners_of(run_.model.shape(a));
     auto corners_b = corners_of(run_.model.shape(b));
     const Pose& at_a = found.states[patch.a].pose;
