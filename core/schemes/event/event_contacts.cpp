@@ -410,7 +410,8 @@ void EventContacts::carry_riders(BodyIndex surface, Instant t) {
 // --- Fields ------------------------------------------------------------------------------------
 
 void EventContacts::cross_field(BodyIndex a, BodyIndex b, Instant t, bool entering) {
-  const auto [field, body] = run_.model.is_field(a) ? std::pair{a, b} : std::pair{b, a};
+  const BodyIndex field = run_.model.is_field(a) ? a : b;
+  const BodyIndex body = field == a ? b : a;
   motions_.open(body, t);
   std::vector<BodyIndex> group;
   if (modes_.holds(body)) {

@@ -15,7 +15,7 @@ inline namespace core {
 /// What a person can do about bodies that stay in touch: the end of a stop's reason.
 inline constexpr std::string_view part_them =
     "contact that lasts is kept where loads are constant and nothing turns, or one body alone "
-    "turns on half-spaces; allowed: bodies that start apart, a restitution of 1, another scheme, "
+    "turns on what is fixed; allowed: bodies that start apart, a restitution of 1, another scheme, "
     "or a run that ends before (--duration)";
 
 /// What the parts of an event-driven run share: also what is due, and how far predictions go.

@@ -208,10 +208,13 @@ std::string EventModes::add_touches(Gathered& found, Turning& turning) const {
     if (!patch.drift.isZero(0.0)) {
       return "a body turns on a belt";
     }
-    // Where a face ends is not watched.
-    if (!std::holds_alternative<HalfSpace>(run_.model.shape(a)) &&
-        !std::holds_alternative<HalfSpace>(run_.model.shape(b))) {
-      return fmt::format("{} touch, one turns, and neither is a half-space", run_.names(a, b));
+    // Where the face or the edge that a ball rolls on ends is not watched.
+    for (const auto& [ball, other] : {std::pair{a, b}, std::pair{b, a}}) {
+      if (std::holds_alternative<Sphere>(run_.model.shape(ball)) &&
+          !std::holds_alternative<HalfSpace>(run_.model.shape(other))) {
+        return fmt::format("{} touch, one turns, and what the ball is on may end",
+                           run_.names(a, b));
+      }
     }
     auto corners_a = corners_of(run_.model.shape(a));
     auto corners_b = corners_of(run_.model.shape(b));
