@@ -1,9 +1,12 @@
 #include "core/contacts/touch.hpp"
 
+#include "core/contacts/touch_rim.hpp"
+
 #include <Eigen/Geometry>
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace kairos {
@@ -222,6 +225,32 @@ std::optional<TouchFeature> line_feature(const Shape& shape, const Vector3& x,
   return best;
 }
 
+/// Of what a ball is on, with the middle at x (body frame): the face, the edge or the corner that
+/// is nearest to x; nothing where none is known.
+std::optional<TouchFeature> under_ball(const Shape& shape, const Vector3& on,
+                                       const Vector3& outward, bool face, const Vector3& x) {
+  std::optional<TouchFeature> best;
+  double least = std::numeric_limits<double>::infinity();
+  const auto offer = [&](const std::optional<TouchFeature>& feature) {
+    const double beyond = feature ? beyond_region(*feature, shape, x) : least;
+    if (beyond < least) {
+      least = beyond;
+      best = feature;
+    }
+  };
+  if (face) {
+    offer(TouchFeature{Kind::plane, on, outward, 0.0});
+  }
+  offer(line_feature(shape, on, outward));
+  offer(ball_feature(shape, on, outward));
+  return best;
+}
+
+/// A ball, which is round, and what it is on.
+bool is_round(const std::optional<TouchFeature>& feature) {
+  return feature && feature->radius > 0.0;
+}
+
 }  // namespace
 
 TouchNow look_at(const Touch& touch, const BodyState& state_a, const BodyState& state_b) {
@@ -274,6 +303,23 @@ std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point
   touch.normal = n;
   const auto corner_a = ball_feature(shape_a, on_a, n_A);
   const auto corner_b = ball_feature(shape_b, on_b, -n_B);
+  if (is_round(corner_a) && !std::holds_alternative<HalfSpace>(shape_b)) {
+    const Vector3 middle = b.to_body(a.to_world(corner_a->at));
+    const auto under = under_ball(shape_b, on_b, -n_B, manifold.face_of_b, middle);
+    if (under) {
+      touch.on_a = *corner_a;
+      touch.on_b = *under;
+      return touch;
+    }
+  } else if (is_round(corner_b) && !std::holds_alternative<HalfSpace>(shape_a)) {
+    const Vector3 middle = a.to_body(b.to_world(corner_b->at));
+    const auto under = under_ball(shape_a, on_a, n_A, manifold.face_of_a, middle);
+    if (under) {
+      touch.on_a = *under;
+      touch.on_b = *corner_b;
+      return touch;
+    }
+  }
   if (manifold.face_of_b && (corner_a || !(manifold.face_of_a && corner_b))) {
     // Where edges cross on a face the point goes with a, until it is looked at again.
     touch.on_a = corner_a.value_or(TouchFeature{Kind::ball, on_a, Vector3::Zero(), 0.0});

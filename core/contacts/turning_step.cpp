@@ -27,6 +27,9 @@ constexpr int most_halvings = 40;
 /// Held gaps are off by no more than this part of what they are.
 constexpr double drift = 0.1;
 
+/// What is this part of its size beyond a rim is beyond it.
+constexpr double over_rim = 1e-12;
+
 /// The group at other states.
 TurningState at_states(const TurningGroup& group, std::span<const BodyState> free_states) {
   TurningState state;
@@ -251,14 +254,14 @@ class Step {
     for (std::size_t k = 0; k < state.touches.size(); ++k) {
       const double closing = -forces.gap_acceleration(k, found.accelerations) / forces.load();
       if (mode_.choices[k].does == Does::opens && closing >= found.violation) {
-        return rim(state, forces) ? TurningEnd::rim : TurningEnd::step;
+        return rim(state) ? TurningEnd::rim : TurningEnd::step;
       }
     }
     beyond = found.violation;
     if (beyond > guard) {
       return TurningEnd::forces;
     }
-    return rim(state, forces) ? TurningEnd::rim : TurningEnd::step;
+    return rim(state) ? TurningEnd::rim : TurningEnd::step;
   }
 
   /// Whether what slides, slides back.
@@ -267,7 +270,26 @@ class Step {
            c.direction.dot(now.velocity) < -1e-6 * slow_;
   }
 
-  [[nodiscard]] bool rim(const TurningState&, const TurningForces&) const { return false; }
+  /// Whether something is held beyond the rim of what it is on: by more than roundoff, so that it
+  /// is known to be beyond, and by more than it was.
+  [[nodiscard]] bool rim(const TurningState& state) const {
+    for (std::size_t k = 0; k < state.touches.size(); ++k) {
+      const Touch& touch = state.touches[k];
+      if (mode_.choices[k].does == Does::opens) {
+        continue;
+      }
+      const double size = group_.start.radius[touch.a] + group_.start.radius[touch.b];
+      for (const TouchRim& rim : group_.rims[k]) {
+        const auto& start = group_.start.states;
+        const double before = rim.beyond(touch, start[touch.a], start[touch.b]);
+        if (rim.beyond(touch, state.states[touch.a], state.states[touch.b]) >
+            std::max(before, 0.0) + over_rim * size) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
 
   void end_mode() {
     double lo = 0.0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/contacts/touch_rim.hpp"
 #include "core/contacts/turning_mode.hpp"
 #include "core/event.hpp"
 #include "core/force.hpp"
@@ -28,10 +29,11 @@ struct TurningPair {
 /// A group of bodies that turn while they touch, and what moves them.
 struct TurningGroup {
   TurningState start;
-  std::vector<BodyIndex> bodies;        ///< by place
-  std::vector<BodyInertia> inertia;     ///< by place; mass <= 0: it stays where it is
-  std::vector<Vector3> constant_force;  ///< by place, N
-  std::vector<TurningPair> pairs;       ///< as `Touch::pair` counts
+  std::vector<BodyIndex> bodies;            ///< by place
+  std::vector<BodyInertia> inertia;         ///< by place; mass <= 0: it stays where it is
+  std::vector<Vector3> constant_force;      ///< by place, N
+  std::vector<TurningPair> pairs;           ///< as `Touch::pair` counts
+  std::vector<std::vector<TouchRim>> rims;  ///< by touch
 };
 
 /// Why a step of a group ended where it did.
@@ -63,7 +65,7 @@ struct TurningStep {
 /// gaps is taken out at the end of the step, positions first and then velocities, and its motions
 /// are bent to that. The step is shortened until no held gap is off by more than a small part of
 /// what it is. What ends the mode is looked for along these motions: corners that come down between
-/// bounds of their accelerations, forces at 16 points and then by bisection.
+/// bounds of their accelerations, forces and rims at 16 points and then by bisection.
 [[nodiscard]] TurningStep turning_step(const TurningGroup& group, const TurningMode& mode,
                                        Stepper& stepper, Instant t, double longest);
 

@@ -123,6 +123,100 @@ TEST_CASE("turning 1: a tall block that slides tips where friction is more than 
   CHECK(sim.result.state[1].twist.linear == Vector3(0, 0, 0));
 }
 
+namespace {
+
+std::string rolling_ball(double r, const Vector3& p, const std::string& rest) {
+  return fmt::format(
+      "[[body]]\nname = \"ball\"\nentity = \"body\"\nshape = \"sphere\"\nradius = {}\nmass = "
+      "1.0\nrestitution = 0.0\nposition = {}\n{}\n",
+      r, at(p), rest);
+}
+
+/// When what touches at the start no longer does.
+Instant parting(const Simulation& sim) {
+  for (const Event& event : sim.trajectory.events()) {
+    if (event.kind == EventKind::contact_ends) {
+      return event.time;
+    }
+  }
+  return Instant::never();
+}
+
+}  // namespace
+
+// Held a gap of 6e-11 m above the surface, and with friction that stands for an infinite one until
+// the normal force is 1e-8 of it: 1e-10 s.
+TEST_CASE("turning 6: a ball rolls, or slides, off a ball that stays where it is",
+          "[turning][reference]") {
+  struct Case {
+    const char* friction;
+    double time, angle;
+  };
+  for (const auto& [friction, time, angle] :
+       {Case{"inf", 1.24979796669, 0.945550554159}, Case{"0", 1.01469724250, 0.845528201857}}) {
+    CAPTURE(friction);
+    const std::string text =
+        fmt::format(
+            "duration = 1.5\nframe = \"1/60\"\nG = {}\nfriction = {}\n[[body]]\nname = "
+            "\"under\"\nentity = \"wall\"\nshape = \"sphere\"\nradius = 1.0\n",
+            g, friction) +
+        rolling_ball(0.25, {1.25 * std::sin(0.1), 1.25 * std::cos(0.1), 0.0}, "");
+    const auto sim = run(text);
+    check_whole(sim, text);
+    const Instant left = parting(sim);
+    CHECK(std::abs(left.seconds - time) <= 1e-9);
+    for (const Event& event : sim.trajectory.events()) {
+      if (event.kind == EventKind::contact_ends) {
+        const Vector3& p = event.before_a.pose.position;
+        CHECK(std::abs(std::atan2(p.x(), p.y()) - angle) <= 1e-9);
+        CHECK(event.grade == Grade::sampled);
+      }
+    }
+  }
+}
+
+// The rim of the table is a guard: from there on the ball turns about its edge.
+TEST_CASE("turning 6: a ball rolls over the edge of a table and leaves it",
+          "[turning][reference]") {
+  const std::string text =
+      fmt::format(
+          "duration = 0.5\nframe = \"1/60\"\nG = {}\nfriction = inf\n[[body]]\nname = "
+          "\"table\"\nentity = \"wall\"\nshape = \"box\"\nhalf_extents = [1, 0.5, 1]\n"
+          "position = [-1, -0.5, 0]\n",
+          g) +
+      rolling_ball(0.1, {-0.05, 0.1, 0.0}, "velocity = [0.5, 0, 0]\nangular_velocity = [0, 0, -5]");
+  const auto sim = run(text);
+  check_whole(sim, text);
+  CHECK(std::abs(parting(sim).seconds - (0.1 + 0.132745031152)) <= 1e-9);
+  for (const Event& event : sim.trajectory.events()) {
+    if (event.kind == EventKind::contact_ends) {
+      const Vector3& p = event.before_a.pose.position;
+      CHECK(std::abs(std::atan2(p.x(), p.y()) - 0.804769579296) <= 1e-9);
+    }
+  }
+}
+
+TEST_CASE("turning: a ball that rolls along the edge of a box leaves it at the corner",
+          "[turning]") {
+  // Along the edge z, hanging beside it: friction holds it until it comes to the end of the edge.
+  const double angle = 0.3;
+  const std::string text =
+      fmt::format(
+          "duration = 0.6\nframe = \"1/60\"\nG = {}\nfriction = inf\n[[body]]\nname = "
+          "\"table\"\nentity = \"wall\"\nshape = \"box\"\nhalf_extents = [1, 0.5, 1]\n"
+          "position = [-1, -0.5, 0]\n",
+          g) +
+      rolling_ball(0.1, {0.1 * std::sin(angle), 0.1 * std::cos(angle), 0.9},
+                   fmt::format("velocity = [0, 0, 1]\nangular_velocity = [{}, {}, 0]",
+                               10.0 * std::cos(angle), -10.0 * std::sin(angle)));
+  const auto sim = run(text);
+  check_whole(sim, text);
+  const Instant left = parting(sim);
+  REQUIRE(left < Instant{0.6, 0.0});
+  // Past the corner at z = 1 nothing is left to roll on.
+  CHECK(sim.result.state[1].pose.position.y() < 0.0);
+}
+
 TEST_CASE("turning: a ball that strikes a resting box off its centre sets it rocking",
           "[turning]") {
   const auto sim = run(head(0.7, "0.3") + box({0.5, 0.5, 0.5}, {0, 0.5, 0}, 0.6, "") +

@@ -343,6 +343,11 @@ void EventContacts::settle(BodyIndex ball, const Support& support, double pressi
   auto& [settled, contact_begins] = bodies_[ball];
   if (settled != Instant::never() &&
       accumulation_.stalls(ball, support.surface, t, least_progress * run_.epoch)) {
+    // At the rim of a face: it goes on over the edge.
+    const std::array<BodyIndex, 2> pair{ball, support.surface};
+    if (settle(pair, t, {.unloaded = true, .may_turn = true})) {
+      return;
+    }
     return run_.stop(t, fmt::format("accumulation: {} leave and meet each other again and again, "
                                     "and time does not go on; {}",
                                     run_.names(ball, support.surface), part_them));

@@ -133,6 +133,7 @@ class EventModes {
   [[nodiscard]] bool settle_turning(std::span<const BodyIndex> seeds, Instant t, const Adopt& adopt,
                                     const Wish& wish);
   [[nodiscard]] std::string add_touches(Gathered& found, Turning& turning) const;
+  [[nodiscard]] std::string add_rims(const Gathered& found, Turning& turning) const;
   [[nodiscard]] static bool presses(const Gathered& found, const Turning& turning,
                                     const BodyPair& pair);
   [[nodiscard]] double next_step(const Gathered& found);

@@ -18,7 +18,7 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// of that are made as large.
 constexpr double least_gap = 1.0 / 16.0;
 /// Infinite friction: as this, so that what is hardly pressed any more may slide.
-constexpr double rough = 1e6;
+constexpr double rough = 1e8;
 /// Steps that are shorter than this part of a frame, so many in a row, get nowhere.
 constexpr double short_step = 1e-4;
 constexpr int most_short_steps = 500;
@@ -62,6 +62,10 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
   lift(found, turning);
   if (!has_room(found, t)) {
     why_not_ = "a body turns, and another is too near to it";
+    return false;
+  }
+  why_not_ = add_rims(found, turning);
+  if (!why_not_.empty()) {
     return false;
   }
   if (turning.group.start.touches.empty()) {
@@ -208,14 +212,6 @@ std::string EventModes::add_touches(Gathered& found, Turning& turning) const {
     if (!patch.drift.isZero(0.0)) {
       return "a body turns on a belt";
     }
-    // Where the face or the edge that a ball rolls on ends is not watched.
-    for (const auto& [ball, other] : {std::pair{a, b}, std::pair{b, a}}) {
-      if (std::holds_alternative<Sphere>(run_.model.shape(ball)) &&
-          !std::holds_alternative<HalfSpace>(run_.model.shape(other))) {
-        return fmt::format("{} touch, one turns, and what the ball is on may end",
-                           run_.names(a, b));
-      }
-    }
     auto corners_a = corners_of(run_.model.shape(a));
     auto corners_b = corners_of(run_.model.shape(b));
     const Pose& at_a = found.states[patch.a].pose;
@@ -257,6 +253,20 @@ std::string EventModes::add_touches(Gathered& found, Turning& turning) const {
       group.start.touches.push_back(*touch);
     }
     group.pairs.push_back(std::move(pair));
+  }
+  return {};
+}
+
+/// Where what is touched ends; why that is not known.
+std::string EventModes::add_rims(const Gathered& found, Turning& turning) const {
+  for (const Touch& touch : turning.group.start.touches) {
+    const BodyIndex a = found.bodies[touch.a];
+    const BodyIndex b = found.bodies[touch.b];
+    auto rims = rims_of(touch, run_.model.shape(a), run_.model.shape(b));
+    if (!rims) {
+      return fmt::format("{} touch, one turns, and what it is on may end", run_.names(a, b));
+    }
+    turning.group.rims.push_back(std::move(*rims));
   }
   return {};
 }

@@ -1,0 +1,188 @@
+#include "core/contacts/touch_rim.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+using Kind = TouchFeature::Kind;
+using Side = TouchRim::Side;
+using Sides = std::vector<TouchRim::Side>;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Directions and places of features are those of the shape to this part.
+constexpr double same = 1e-6;
+
+Side through(const Vector3& normal, const Vector3& x) { return {normal, normal.dot(x)}; }
+
+// --- Boxes -------------------------------------------------------------------------------------
+
+Sides box_sides(const Vector3& half, const TouchFeature& feature) {
+  Sides sides;
+  for (int k = 0; k < 3; ++k) {
+    const Vector3 axis = Vector3::Unit(k);
+    const bool along = std::abs(feature.direction[k]) > 0.5;
+    // Between the ends along a line, and on a face: between both faces across.
+    if (feature.kind != Kind::ball && along == (feature.kind == Kind::line)) {
+      sides.push_back({axis, half[k]});
+      sides.push_back({-axis, half[k]});
+    } else if (feature.kind != Kind::plane) {
+      const double sign = feature.at[k] < 0.0 ? -1.0 : 1.0;
+      sides.push_back({-sign * axis, -half[k]});
+    }
+  }
+  return sides;
+}
+
+// --- Hulls -------------------------------------------------------------------------------------
+
+std::optional<Sides> face_sides(const Polytope& p, const Vector3& normal) {
+  for (std::size_t f = 0; f < p.faces.size(); ++f) {
+    if ((p.normals[f] - normal).norm() > same) {
+      continue;
+    }
+    Sides sides;
+    const auto corners = p.faces[f];
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const Vector3& x = p.vertices[corners[k]];
+      const Vector3 along = p.vertices[corners[(k + 1) % corners.size()]] - x;
+      sides.push_back(through(along.cross(p.normals[f]).normalized(), x));
+    }
+    return sides;
+  }
+  return std::nullopt;
+}
+
+std::optional<Sides> edge_sides(const Polytope& p, const TouchFeature& line) {
+  for (const auto& [i, j] : p.edges) {
+    const Vector3& x = p.vertices[i];
+    const Vector3 along = (p.vertices[j] - x).normalized();
+    const Vector3 from = line.at - x;
+    if (along.cross(line.direction).norm() > same || along.cross(from).norm() > same * p.radius) {
+      continue;
+    }
+    Sides sides{through(along, p.vertices[j]), through(-along, x)};
+    for (std::size_t f = 0; f < p.faces.size(); ++f) {
+      const auto corners = p.faces[f];
+      const auto has = [&](std::uint32_t v) {
+        return std::find(corners.begin(), corners.end(), v) != corners.end();
+      };
+      if (has(i) && has(j)) {
+        Vector3 into = p.normals[f].cross(along);
+        into = into.dot(p.vertices[corners[0]] + p.vertices[corners[1]] + p.vertices[corners[2]] -
+                        3.0 * x) < 0.0
+                   ? Vector3(-into)
+                   : into;
+        sides.push_back(through(into.normalized(), x));
+      }
+    }
+    return sides;
+  }
+  return std::nullopt;
+}
+
+std::optional<Sides> corner_sides(const Polytope& p, const Vector3& at) {
+  for (std::uint32_t v = 0; v < p.vertices.size(); ++v) {
+    if ((p.vertices[v] - at).norm() > same * p.radius) {
+      continue;
+    }
+    Sides sides;
+    for (const auto& [i, j] : p.edges) {
+      if (i == v || j == v) {
+        const Vector3 along = p.vertices[i == v ? j : i] - p.vertices[v];
+        sides.push_back(through(along.normalized(), p.vertices[v]));
+      }
+    }
+    return sides;
+  }
+  return std::nullopt;
+}
+
+/// The region of space that is nearest to a feature, as far as `TouchRim` asks.
+std::optional<Sides> region(const TouchFeature& feature, const Shape& shape) {
+  if (std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<Sphere>(shape)) {
+    return Sides{};
+  }
+  if (std::holds_alternative<Capsule>(shape)) {
+    return feature.kind == Kind::ball
+               ? std::optional(Sides{
+                     through(Vector3::UnitY() * (feature.at.y() < 0.0 ? 1.0 : -1.0), feature.at)})
+               : std::nullopt;
+  }
+  if (const auto* box = std::get_if<Box>(&shape)) {
+    return box_sides(box->half_extents, feature);
+  }
+  if (const auto* hull = std::get_if<Hull>(&shape)) {
+    const Polytope& p = *hull->core;
+    return feature.kind == Kind::plane  ? face_sides(p, feature.direction)
+           : feature.kind == Kind::line ? edge_sides(p, feature)
+                                        : corner_sides(p, feature.at);
+  }
+  return std::nullopt;
+}
+
+/// Whether a ball feature is a ball or a corner of the shape, and not where two edges cross.
+bool is_corner(const TouchFeature& feature, const Shape& shape) {
+  const auto corners = corners_of(shape);
+  return corners && std::any_of(corners->begin(), corners->end(),
+                                [&](const TouchFeature& c) { return c.at == feature.at; });
+}
+
+double beyond_sides(const Sides& sides, const Vector3& x) {
+  double most = -infinity;
+  for (const Side& side : sides) {
+    most = std::max(most, side.normal.dot(x) - side.offset);
+  }
+  return most;
+}
+
+}  // namespace
+
+double TouchRim::beyond(const Touch& touch, const BodyState& a, const BodyState& b) const {
+  const Pose& own = of_a ? a.pose : b.pose;
+  if (of_lines) {
+    const TouchNow now = look_at(touch, a, b);
+    return beyond_sides(sides, own.to_body(of_a ? now.point_a : now.point_b));
+  }
+  const Vector3 middle = (of_a ? b : a).pose.to_world((of_a ? touch.on_b : touch.on_a).at);
+  return beyond_sides(sides, own.to_body(middle));
+}
+
+std::optional<std::vector<TouchRim>> rims_of(const Touch& touch, const Shape& a, const Shape& b) {
+  std::vector<TouchRim> rims;
+  for (const bool of_a : {true, false}) {
+    const TouchFeature& feature = of_a ? touch.on_a : touch.on_b;
+    const TouchFeature& other = of_a ? touch.on_b : touch.on_a;
+    const bool of_lines = feature.kind == Kind::line && other.kind == Kind::line;
+    if (!of_lines && (other.kind != Kind::ball || !is_corner(other, of_a ? b : a))) {
+      continue;
+    }
+    auto sides = region(feature, of_a ? a : b);
+    if (!sides) {
+      return std::nullopt;
+    }
+    if (of_lines) {
+      // Which faces lines separate is not asked: corners that come down are watched.
+      std::erase_if(*sides, [&](const Side& side) {
+        return std::abs(side.normal.dot(feature.direction)) < 0.5;
+      });
+    }
+    if (!sides->empty()) {
+      rims.push_back({std::move(*sides), of_a, of_lines});
+    }
+  }
+  return rims;
+}
+
+double beyond_region(const TouchFeature& feature, const Shape& shape, const Vector3& x) {
+  const auto sides = region(feature, shape);
+  return sides ? beyond_sides(*sides, x) : infinity;
+}
+
+}  // namespace core
+}  // namespace kairos
