@@ -155,7 +155,7 @@ void EventContacts::touch(BodyIndex a, BodyIndex b, const Contact& contact, Inst
   if (settle(pair, t, {.pressed = BodyPair{a, b}}) || meet_elsewhere(a, b, t)) {
     return;
   }
-  if (accumulation_.stalls(a, b, t, least_progress * run_.epoch)) {
+  if (accumulation_.stalls(a, b, t, least_progress * run_.epoch())) {
     if (settle(pair, t, {.unloaded = true, .may_turn = true})) {
       return;
     }
@@ -187,7 +187,7 @@ Contact EventContacts::contact_at(BodyIndex a, BodyIndex b, Instant t, double pa
 /// A pair within tolerance that does not approach is asked about again where the answer ends.
 /// Answers that hardly get on, one after the other, would be asked for without end.
 void EventContacts::look_again(BodyIndex a, BodyIndex b, Instant t, double patience) {
-  const double window = std::min({motions_.of(a).duration, motions_.of(b).duration, run_.epoch});
+  const double window = std::min({motions_.of(a).duration, motions_.of(b).duration, run_.epoch()});
   if (accumulation_.stalls(a, b, t, least_progress * window)) {
     const std::array<BodyIndex, 2> pair{a, b};
     if (settle(pair, t, {.unloaded = true, .may_turn = true}) || meet_elsewhere(a, b, t)) {
@@ -233,7 +233,7 @@ bool EventContacts::lands(BodyIndex a, BodyIndex b, const Contact& contact, Inst
       if (settle(pair, t)) {
         return true;
       }
-      if (!accumulation_.stalls(a, b, t, least_progress * run_.epoch)) {
+      if (!accumulation_.stalls(a, b, t, least_progress * run_.epoch())) {
         continue;  // one surface after the other slows it down
       }
       const BodyIndex other = motions_.support(ball)->surface;
@@ -342,7 +342,7 @@ void EventContacts::settle(BodyIndex ball, const Support& support, double pressi
   motions_.launch(ball, t);
   auto& [settled, contact_begins] = bodies_[ball];
   if (settled != Instant::never() &&
-      accumulation_.stalls(ball, support.surface, t, least_progress * run_.epoch)) {
+      accumulation_.stalls(ball, support.surface, t, least_progress * run_.epoch())) {
     // At the rim of a face: it goes on over the edge.
     const std::array<BodyIndex, 2> pair{ball, support.surface};
     if (settle(pair, t, {.unloaded = true, .may_turn = true})) {

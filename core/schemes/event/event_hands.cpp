@@ -68,10 +68,7 @@ void EventHands::clear(BodyIndex a, BodyIndex b, Instant t) {
 
 /// What was let go of meets others from now on, unless it is inside one of them.
 void EventHands::meet_again(std::size_t grip, Instant t) {
-  const auto pose = [&](BodyIndex i) {
-    return run_.model.mobility(i) == Mobility::fixed ? motions_.now(i).pose
-                                                     : motions_.at(i, t).pose;
-  };
+  const auto pose = [&](BodyIndex i) { return motions_.at(i, t).pose; };
   const Grip& of = run_.model.grips()[grip];
   if (std::string why = why_not_released(run_, grasps_, of, t, pose); !why.empty()) {
     return run_.stop(t, std::move(why));

@@ -54,7 +54,7 @@ double EventModes::rest_speed(BodyIndex a, BodyIndex b, const BodyState& at_a,
 EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instant t,
                                         const Wish& wish) {
   Gathered found;
-  found.group.instant = at_once * run_.epoch;
+  found.group.instant = at_once * run_.epoch();
   const auto is_seed = [&](BodyIndex i) {
     return std::find(seeds.begin(), seeds.end(), i) != seeds.end();
   };

@@ -65,13 +65,13 @@ bool EventModes::settle_flat(Gathered found, Instant t, const Adopt& adopt, cons
     }
     std::vector<double> until;
     why_not_ = guard_times(run_.model, found.bodies, found.states, found.group, mode,
-                           run_.epoch_end - t, until);
+                           run_.epoch_end() - t, until);
     if (!why_not_.empty()) {
       return false;
     }
     // A ball that is beyond the rim already is carried by nothing.
     const auto over = std::find_if(until.begin(), until.end(),
-                                   [&](double s) { return s <= at_once * run_.epoch; });
+                                   [&](double s) { return s <= at_once * run_.epoch(); });
     if (over != until.end()) {
       const auto p = over - until.begin();
       if (found.group.patches[static_cast<std::size_t>(p)].manifold.size > 1) {
@@ -84,14 +84,12 @@ bool EventModes::settle_flat(Gathered found, Instant t, const Adopt& adopt, cons
     }
     commit(found, mode, t, adopt);
     for (std::size_t p = 0; p < until.size(); ++p) {
-      if (std::isfinite(until[p]) && t + until[p] < run_.epoch_end) {
-        run_.agenda.push(t + until[p], Due::mode_ends, found.pairs[p].first, found.pairs[p].second);
-      }
+      run_.push_in_epoch(t + until[p], Due::mode_ends, found.pairs[p].first, found.pairs[p].second);
     }
     for (std::size_t p = 0; p < mode.slip_ends.size(); ++p) {
-      if (mode.kept[p] != 0 && t + mode.slip_ends[p] < run_.epoch_end) {
-        run_.agenda.push(t + mode.slip_ends[p], Due::mode_ends, found.pairs[p].first,
-                         found.pairs[p].second);
+      if (mode.kept[p] != 0) {
+        run_.push_in_epoch(t + mode.slip_ends[p], Due::mode_ends, found.pairs[p].first,
+                           found.pairs[p].second);
       }
     }
     return true;

@@ -239,7 +239,7 @@ void EventMotions::next_segment(Flow& flow, Instant t) {
   const double longest = run_.options.step > 0.0 ? run_.options.step : run_.mean_frame;
   // A closed form has no end of its own.
   const double h =
-      flow.exact ? std::numeric_limits<double>::infinity() : std::min(run_.epoch, longest);
+      flow.exact ? std::numeric_limits<double>::infinity() : std::min(run_.epoch(), longest);
   ++run_.cost.steps;
   const StepResult step = flow.stepper->step(flow.island, t, h, flow.states);
   if (!step.ok || !(step.advanced > 0.0)) {
@@ -266,7 +266,7 @@ void EventMotions::next_segment(Flow& flow, Instant t) {
 
 /// The next motion of a driven body.
 void EventMotions::drive(BodyIndex i, Instant t) {
-  set_motion(i, run_.model.body(i).drive->motion(t, run_.epoch));
+  set_motion(i, run_.model.body(i).drive->motion(t, run_.epoch()));
   bring(i, t);
   run_.agenda.push(end_of(i), Due::segment_end, i, i);
 }
@@ -351,7 +351,7 @@ void EventMotions::hold(Flow& flow, Instant t) {
   const BodyIndex surface = support->surface;
   const double mass = flow.island.inertia[0].mass;
   const Motion under = of(surface).shifted(t - start_of(surface));
-  const double left = std::min({run_.epoch_end - t, under.duration, motion.duration});
+  const double left = std::min({run_.epoch_end() - t, under.duration, motion.duration});
   double until = face_exit_time(run_.model.shape(surface), under, motion, n, left);
   if (run_.model.mobility(surface) == Mobility::driven) {
     until = std::min(until, lift_off_time(under, n, mass, net_force(i)));
@@ -368,9 +368,7 @@ void EventMotions::hold(Flow& flow, Instant t) {
     };
     until = std::min(until, release_time(contact_force, std::min(until, left)));
   }
-  if (t + until < run_.epoch_end) {
-    run_.agenda.push(t + until, Due::support_ends, i, surface);
-  }
+  run_.push_in_epoch(t + until, Due::support_ends, i, surface);
 }
 
 void EventMotions::carry(BodyIndex i, BodyIndex hand, const BodyState& state, Instant t) {

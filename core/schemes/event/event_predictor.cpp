@@ -14,7 +14,7 @@ inline namespace core {
 EventPredictor::EventPredictor(EventRun& run, const EventMotions& motions, const Grasps& grasps,
                                const ContactGraph& graph, const Method& method)
     : run_(run), motions_(motions), grasps_(grasps), graph_(graph), bodies_(run.model.size()) {
-  if (run.model.broad_phase() != "all-pairs" || run.model.scene().periodic) {
+  if (!run.model.asks_every_pair() || run.model.scene().periodic) {
     neighbourhood_ = method.neighbourhood(run.model, run.options.toi_tolerance);
     return;
   }
@@ -226,7 +226,7 @@ void EventPredictor::ask(BodyIndex i, const Neighbour& other, Instant from, Inst
   if (motions_.is_supported_by(a, b) || motions_.is_supported_by(b, a) || graph_.joins(a, b)) {
     return;
   }
-  double duration = std::min({motions_.end_of(a), motions_.end_of(b), run_.epoch_end}) - from;
+  double duration = std::min({motions_.end_of(a), motions_.end_of(b), run_.epoch_end()}) - from;
   for (const BodyIndex k : {a, b}) {  // a step of 1e-22 s is lost beside the time of day
     if (motions_.start_of(k) == from) {
       duration = std::min(duration, motions_.duration_of(k));
@@ -309,7 +309,7 @@ double EventPredictor::touching_gap(BodyIndex a, BodyIndex b) const {
   for (const BodyIndex i : {a, b}) {
     const auto moving = motions_.moving(i);
     const Motion& motion = moving.motion();
-    const double s = std::min(motion.duration, run_.epoch);
+    const double s = std::min(motion.duration, run_.epoch());
     double reached = 0.0;
     for (int k = motion.position.degree(); k >= 0; --k) {
       reached = reached * s + motion.position[k].lpNorm<Eigen::Infinity>();

@@ -81,7 +81,7 @@ class EventPredictor {
 
   /// Until when a motion that body i has now may be asked about.
   [[nodiscard]] Instant last_of(BodyIndex i) const {
-    return std::min(motions_.end_of(i), run_.epoch_end);
+    return std::min(motions_.end_of(i), run_.epoch_end());
   }
   void enter(BodyIndex i, Instant t);
   void predict_near(BodyIndex i, const Neighbour& j, Instant known = before_all);

@@ -1,5 +1,7 @@
 #include "core/schemes/event/event_run.hpp"
 
+#include "core/archive.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,8 +12,7 @@ inline namespace core {
 namespace {
 
 /// Who keeps a run busy: "'a' and 'b' (98 %), 'b' and 'c' (2 %)".
-std::string who(const EventRun& run) {
-  std::vector<WorkBudget::Share> shares = run.budget.busiest();
+std::string who(const EventRun& run, std::vector<WorkBudget::Share> shares) {
   for (WorkBudget::Share& s : shares) {
     if (run.agenda.before(s.b, s.a)) {
       std::swap(s.a, s.b);
@@ -34,22 +35,32 @@ std::string who(const EventRun& run) {
 
 }  // namespace
 
+void EventRun::begin_epoch(Instant t) {
+  epoch_end_ = t + epoch_;
+  const BodyIndex any = agenda.by_name().front();
+  agenda.push(epoch_end_, Due::epoch_end, any, any);
+}
+
 void EventRun::spend(const DueEvent& event) {
-  switch (budget.spend(event)) {
+  switch (budget_.spend(event)) {
     case WorkBudget::Spent::nothing:
       return;
     case WorkBudget::Spent::instant:
       return stop(event.time,
                   fmt::format("accumulation: {} events at one instant, and time does not go on: of "
                               "{}; they stay in touch; {}",
-                              budget.most_at_once(), who(*this), part_them));
+                              budget_.most_at_once(), who(*this, budget_.busiest()), part_them));
     case WorkBudget::Spent::frame:
       return stop(event.time,
                   fmt::format("too many events: more than {} in one frame, most of them of {}; "
                               "allowed: shorter frames (--frame), more events (--max-events), or a "
                               "run that ends before (--duration)",
-                              budget.most_in_frame(), who(*this)));
+                              budget_.most_in_frame(), who(*this, budget_.busiest())));
   }
+}
+
+void EventRun::persist(Archive& archive) {
+  archive(boxes_on, time, epoch_end_, agenda, budget_, ledger, cost);
 }
 
 }  // namespace core

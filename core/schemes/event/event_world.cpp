@@ -29,7 +29,7 @@ bool EventWorld::begin() {
     persist(archive);
     return open_frame();
   }
-  begin_epoch(Instant{});
+  run_.begin_epoch(Instant{});
   motions_.begin();
   for (const auto& grip : run_.model.grips()) {
     hands_.follow(grip.hand, run_.time);
@@ -88,15 +88,9 @@ void EventWorld::take(const DueEvent& event) {
   }
 }
 
-void EventWorld::begin_epoch(Instant t) {
-  run_.epoch_end = t + run_.epoch;
-  const BodyIndex any = run_.agenda.by_name().front();
-  run_.agenda.push(run_.epoch_end, Due::epoch_end, any, any);
-}
-
 /// Predictions were made up to here: makes those of the next epoch.
 void EventWorld::next_epoch(Instant t) {
-  begin_epoch(t);
+  run_.begin_epoch(t);
   for (const BodyIndex i : run_.agenda.by_name()) {
     // How long a ball is supported was looked at for one epoch only; where the surface moves, its
     // next motion tells.
@@ -127,11 +121,10 @@ void EventWorld::end_segment(BodyIndex i, Instant t) {
 }
 
 bool EventWorld::draw() {
-  run_.time = stopped() ? run_.stopped_at : clock_.next();
+  run_.time = stopped() ? run_.stopped_at() : clock_.next();
   motions_.book_all(run_.time);
   for (BodyIndex i = 0; i < run_.model.size(); ++i) {
-    drawn_[i] =
-        run_.model.mobility(i) == Mobility::fixed ? motions_.now(i) : motions_.at(i, run_.time);
+    drawn_[i] = motions_.at(i, run_.time);
     if (!run_.boxes_on.empty()) {
       drawn_[i].pose.position += run_.way_told(i);
     }
@@ -145,7 +138,7 @@ bool EventWorld::draw() {
 
 /// The frame that follows the one drawn last; false where the run ends.
 bool EventWorld::open_frame() {
-  run_.budget.begin_frame();
+  run_.begin_frame();
   clock_.look(run_.time);
   if (clock_.whole()) {
     run_.offer_checkpoint(clock_.last(), [this](Archive& archive) { persist(archive); });
@@ -160,8 +153,7 @@ RunResult EventWorld::result() && {
 
 /// What a run needs to go on, between a frame that was drawn and the next.
 void EventWorld::persist(Archive& archive) {
-  archive(run_.boxes_on, run_.time, run_.epoch_end, clock_, drawn_, grasps_, run_.agenda,
-          run_.budget, run_.ledger, run_.cost, graph_, motions_, predictor_, contacts_);
+  archive(run_, clock_, drawn_, grasps_, graph_, motions_, predictor_, contacts_);
   run_.recorder.persist(archive);
 }
 

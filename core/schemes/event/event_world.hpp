@@ -35,7 +35,6 @@ class EventWorld {
 
  private:
   void take(const DueEvent& event);
-  void begin_epoch(Instant t);
   void next_epoch(Instant t);
   void end_segment(BodyIndex i, Instant t);
   bool open_frame();

@@ -37,7 +37,7 @@ bool EventModes::settle_driven(const Gathered& found, Instant t, const Adopt& ad
                    .normal = first ? Vector3(-patch.manifold.normal) : patch.manifold.normal,
                    .friction = patch.friction,
                    .still = found.group.loads[k].linear.norm() * found.group.instant,
-                   .duration = run_.epoch_end - t},
+                   .duration = run_.epoch_end() - t},
                   under);
   why_not_ = driven.refusal;
   if (!why_not_.empty()) {
@@ -77,9 +77,7 @@ bool EventModes::settle_driven(const Gathered& found, Instant t, const Adopt& ad
   Alone alone_there{driven.motion, false, {}};
   alone_there.motion.start = t;
   commit(found, mode, t, adopt, &alone_there);
-  if (t + driven.until < run_.epoch_end) {
-    run_.agenda.push(t + driven.until, Due::mode_ends, found.pairs[0].first, found.pairs[0].second);
-  }
+  run_.push_in_epoch(t + driven.until, Due::mode_ends, found.pairs[0].first, found.pairs[0].second);
   return true;
 }
 
@@ -112,7 +110,7 @@ bool EventModes::settle_curved(const Gathered& found, Instant t, const Adopt& ad
   Vector3 slip = start.linear + start.angular.cross(-r * n);
   slip -= n * n.dot(slip);
   const CurvedSlip curve =
-      curved_slip(slip, load + pressing * n, braked * (1.0 + r * turned), run_.epoch_end - t);
+      curved_slip(slip, load + pressing * n, braked * (1.0 + r * turned), run_.epoch_end() - t);
 
   Alone alone{
       Motion::ballistic(t, curve.duration, found.states[k].pose, start, Vector3::Zero()), true, {}};
@@ -154,7 +152,7 @@ bool EventModes::settle_curved(const Gathered& found, Instant t, const Adopt& ad
   }
   until = std::min(until, face_exit_time(run_.model.shape(surface), motions_.of(surface), point, n,
                                          curve.duration));
-  if (until <= at_once * run_.epoch && until < curve.duration) {
+  if (until <= at_once * run_.epoch() && until < curve.duration) {
     why_not_ = "a body begins to turn: it tips, or what supports it is beside its centre";
     return false;
   }
@@ -171,9 +169,7 @@ bool EventModes::settle_curved(const Gathered& found, Instant t, const Adopt& ad
   mode.slip_ends = {until};
   commit(found, mode, t, adopt, &alone);
   why_not_.clear();
-  if (t + until < run_.epoch_end) {
-    run_.agenda.push(t + until, Due::mode_ends, found.pairs[0].first, found.pairs[0].second);
-  }
+  run_.push_in_epoch(t + until, Due::mode_ends, found.pairs[0].first, found.pairs[0].second);
   return true;
 }
 

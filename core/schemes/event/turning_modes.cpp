@@ -103,7 +103,7 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
     why_not_ = "what begins to slide, or stops, turns its direction faster than steps can follow";
     return false;
   }
-  const double longest = std::min({frame, run_.epoch_end - t, next_step(found)});
+  const double longest = std::min({frame, run_.epoch_end() - t, next_step(found)});
   const std::unique_ptr<Stepper> stepper = stepper_(longest);
   turning.step = turning_step(turning.group, turning.mode, *stepper, t, longest);
   why_not_ = turning.step.refusal;
@@ -404,7 +404,7 @@ void EventModes::carry_on(const Gathered& found, const Turning& turning, Instant
     }
   }
   const Instant end = t + turning.step.duration;
-  if (!(end < run_.epoch_end)) {
+  if (!(end < run_.epoch_end())) {
     return;
   }
   const bool strikes = turning.step.end == TurningEnd::strike;

@@ -69,8 +69,8 @@ void SchemeRun::note(const Event& event) {
 }
 
 void SchemeRun::tell(const Event& event) {
-  if (holds_events) {
-    held_events.push_back(event);
+  if (holds_events_) {
+    held_events_.push_back(event);
   } else {
     recorder.event(event);
   }
@@ -86,18 +86,18 @@ Event SchemeRun::where_told(Event event) const {
 }
 
 void SchemeRun::tell_held_events() {
-  std::stable_sort(held_events.begin(), held_events.end(),
+  std::stable_sort(held_events_.begin(), held_events_.end(),
                    [](const Event& a, const Event& b) { return a.time < b.time; });
-  for (const Event& event : held_events) {
+  for (const Event& event : held_events_) {
     recorder.event(event);
   }
-  held_events.clear();
-  holds_events = false;
+  held_events_.clear();
+  holds_events_ = false;
 }
 
 RunResult SchemeRun::result(State&& state) && {
   return {stopped() ? RunStatus::stopped : RunStatus::completed,
-          std::move(reason),
+          std::move(why_stopped_),
           time,
           std::move(state),
           ledger,

@@ -13,24 +13,26 @@ inline namespace core {
 
 /// What the parts of a run share, whatever its scheme: what was asked for, what has been counted
 /// and booked, and whether it is over.
-struct SchemeRun {
+class SchemeRun {
+ public:
   SchemeRun(const Model& of, const Method& method, const SchemeOptions& asked, Recorder& to);
 
   /// Ends the run before its time, for the first reason given.
   void stop(std::string why) {
-    if (reason.empty()) {
-      reason = std::move(why);
+    if (why_stopped_.empty()) {
+      why_stopped_ = std::move(why);
     }
   }
-  [[nodiscard]] bool stopped() const { return !reason.empty(); }
+  [[nodiscard]] bool stopped() const { return !why_stopped_.empty(); }
   /// "'a' and 'b'".
   [[nodiscard]] std::string names(BodyIndex a, BodyIndex b) const {
     return "'" + model.body(a).name + "' and '" + model.body(b).name + "'";
   }
 
-  /// The impact law changes the states (and adds to the net forces, N) of the two bodies of the
-  /// event, whose time and contact are set; counted and told. To book the answer is left to who
-  /// knows what of it is the impact's. `flat`: it turns nothing but spheres.
+  /// Asks the impact law what happens at the event, whose time and contact are set: the states of
+  /// the two bodies become those after it, and what it pushes is added to the net forces (N). The
+  /// event is counted and told. The energies that are returned are not in the ledger yet: the
+  /// caller knows on which lines they belong. `flat`: the impact turns spheres only.
   ImpactEnergy exchange(Event& event, BodyState& a, BodyState& b, Vector3& force_a,
                         Vector3& force_b, bool flat = false);
   /// Inertia of body i as an impact sees it that turns nothing but spheres.
@@ -43,7 +45,7 @@ struct SchemeRun {
   /// An event at which no state jumps.
   void note(const Event& event);
   /// Events that are found out of order are kept from here on, until they are told in order.
-  void hold_events() { holds_events = true; }
+  void hold_events() { holds_events_ = true; }
   void tell_held_events();
   /// Hands what `write` puts into an archive to the keeper of checkpoints, if it wants one now;
   /// `last`: no other offer comes.
@@ -66,17 +68,18 @@ struct SchemeRun {
   const double mean_frame;  ///< s
 
   Instant time;  ///< of the last frame or event
-  std::string reason;
   EnergyLedger ledger;
   EnergyAccount account;  ///< keeps the ledger
   Cost cost;
   std::vector<Image> boxes_on;  ///< by body; empty where no box is periodic
-  bool holds_events = false;
-  std::vector<Event> held_events;  ///< not told yet
 
  private:
   void tell(const Event& event);
   [[nodiscard]] Event where_told(Event event) const;
+
+  std::string why_stopped_;
+  bool holds_events_ = false;
+  std::vector<Event> held_events_;  ///< not told yet
 };
 
 }  // namespace core
