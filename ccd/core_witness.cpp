@@ -7,6 +7,7 @@
 #include "ccd/triangle_witness.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace kairos::ccd {
@@ -129,6 +130,22 @@ void keep_polished(const CorePair& pair, const GjkResult& found, CoreWitness& wi
   }
 }
 
+/// Corner to corner between slivers GJK ends where rounding lets nothing improve, in a direction
+/// that is off by more than the gap: other starts end elsewhere.
+void start_elsewhere(const CorePair& pair, const std::array<Vector3, 3>& starts, double gap,
+                     CoreWitness& witness) {
+  for (const Vector3& start : starts) {
+    if (witness.separation > 0.5 * gap) {
+      return;
+    }
+    const GjkResult other = gjk(pair, start, 0.0);
+    if (!other.inside && other.lower > witness.separation) {
+      witness.separation = other.lower;
+      witness.n = other.n;
+    }
+  }
+}
+
 }  // namespace
 
 CoreWitness core_witness(const CorePair& pair, double reach, double precision, double error) {
@@ -166,6 +183,9 @@ CoreWitness core_witness(const CorePair& pair, double reach, double precision, d
   polish(pair, witness.on_b - witness.on_a, witness.n, witness.separation);
   if (!found.inside && (pair.a.width() == 0.0 || pair.b.width() == 0.0)) {
     keep_polished(pair, found, witness);
+  }
+  if (!found.inside && found.upper > 2.0 * error) {
+    start_elsewhere(pair, {found.n, witness.n, -start}, found.upper, witness);
   }
   if (witness.depth == 0.0 && witness.separation < -2.0 * error) {
     prove_overlap(pair, error, witness);
