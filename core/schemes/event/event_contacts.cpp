@@ -314,13 +314,22 @@ double EventContacts::leaving_speed(BodyIndex ball, const Support& support, Inst
   return support.normal.dot(motions_.now(ball).twist.linear - under.twist(s).linear);
 }
 
-/// The ball takes the velocity of the surface along its normal.
+/// The ball takes the velocity of the surface along its normal, and is as high over it as when it
+/// was met: a driven motion comes in pieces, each cut short at its order, and what they leave out
+/// would add up.
 void EventContacts::follow(BodyIndex ball, const Support& support, Instant t) {
   const double away = leaving_speed(ball, support, t);
   const auto moving = motions_.moving(support.surface);
   const Motion& under = moving.motion();
-  const double ground =
-      support.normal.dot(under.twist(std::min(t - under.start, under.duration)).linear);
+  const double s = std::min(t - under.start, under.duration);
+  if (run_.model.mobility(support.surface) == Mobility::driven) {
+    Vector3& x = motions_.now(ball).pose.position;
+    const double height = support.normal.dot(x - under.pose(s).position);
+    const Vector3 before = x;
+    x += (support.height - height) * support.normal;
+    run_.account.moved(ball, x - before);
+  }
+  const double ground = support.normal.dot(under.twist(s).linear);
   const double m = run_.model.inertia(ball).mass;
   run_.ledger.add(EnergyLine::restitution_loss, -0.5 * m * away * away);
   run_.ledger.add(EnergyLine::driven_work, -m * away * ground);

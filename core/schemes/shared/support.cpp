@@ -72,7 +72,7 @@ double first_positive(const Polynomial<3>& f, double duration) {
   return duration > 0.0 ? first_positive(f, 0.0, duration, halvings) : infinity;
 }
 
-void Support::persist(Archive& archive) { archive(surface, normal); }
+void Support::persist(Archive& archive) { archive(surface, normal, height); }
 
 std::optional<Support> find_support(const Model& model, BodyIndex ball, const Vector3& centre,
                                     BodyIndex surface, const Motion& surface_motion, double s,
@@ -84,7 +84,8 @@ std::optional<Support> find_support(const Model& model, BodyIndex ball, const Ve
   }
   const Pose pose = surface_motion.pose(s);
   if (const auto* half_space = std::get_if<HalfSpace>(&model.shape(surface))) {
-    return Support{surface, half_space_normal(*half_space, pose)};
+    const Vector3 n = half_space_normal(*half_space, pose);
+    return Support{surface, n, n.dot(centre - pose.position)};
   }
   const auto* box = std::get_if<Box>(&model.shape(surface));
   const int axis = box != nullptr ? face_axis(pose.orientation, normal) : -1;
@@ -101,7 +102,8 @@ std::optional<Support> find_support(const Model& model, BodyIndex ball, const Ve
     }
   }
   const Vector3 face = pose.orientation * Vector3(Vector3::Unit(axis));
-  return Support{surface, from_middle.dot(face) > 0.0 ? face : Vector3(-face)};
+  const double height = from_middle.dot(face);
+  return Support{surface, height > 0.0 ? face : Vector3(-face), std::abs(height)};
 }
 
 double face_exit_time(const Shape& surface, const Motion& surface_motion, const Motion& ball_motion,

@@ -16,6 +16,7 @@ class Archive;
 struct Support {
   BodyIndex surface = 0;
   Vector3 normal = Vector3::Zero();  ///< of the face, unit, from the surface to the ball, world
+  double height = 0.0;  ///< of the ball's centre over the surface's origin when it was met, m
 
   void persist(Archive& archive);
 };
