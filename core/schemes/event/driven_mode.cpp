@@ -14,6 +14,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Accelerations below this part of the largest are roundoff.
 constexpr double roundoff = 1e-12;
+/// What begins has had a moment to do so, of the window.
+constexpr double begun = 1e-6;
 
 /// sum |c_k . axis| s^k.
 double most(const Polynomial<3>& p, const Vector3& axis, double s) {
@@ -42,8 +44,8 @@ DrivenMode driven_mode(const DrivenTouch& touch, const Motion& under) {
   const double window = std::min(touch.duration, under.duration);
   const Vector3& n = touch.normal;
   const Polynomial<3> A = under.velocity.differentiated();
-  const double pressing = -touch.load.dot(n);
-  const Vector3 pull = touch.load + n * pressing;
+  const double weight = -touch.load.dot(n);
+  const Vector3 pull = touch.load + n * weight;
   const Vector3 v = under.twist(0.0).linear;
   Vector3 slip = touch.body.twist.linear - v;
   slip -= n * n.dot(slip);
@@ -51,12 +53,25 @@ DrivenMode driven_mode(const DrivenTouch& touch, const Motion& under) {
   for (int axis = 0; axis < 3; ++axis) {
     largest = std::max(largest, most(A, Vector3::Unit(axis), window));
   }
-  if (!(pressing > 0.0)) {
-    mode.refusal = "nothing presses";
+  if (under.rotation != RotationKind::fixed) {
+    mode.refusal = "what carries it turns";
     return mode;
   }
-  if (under.rotation != RotationKind::fixed || most(A, n, window) > roundoff * largest) {
-    mode.refusal = "what carries it is driven, and not straight along its face";
+  const Polynomial<3> presses = along(A, n, 1.0, weight);
+  const bool constant = most(A, n, window) <= roundoff * largest;
+  mode.pressing = constant ? weight : presses[0].x();
+  const double lift_off = first_positive(along(A, n, -1.0, -weight), window);
+  if (constant ? !(weight > 0.0) : !(lift_off > begun * window)) {
+    mode.refusal = constant ? "nothing presses" : "";
+    mode.parts = !constant;
+    return mode;
+  }
+  if (touch.friction == 0.0) {
+    mode.velocity = v + slip;
+    mode.motion = ride(Motion::ballistic(under.start, window, touch.body.pose,
+                                         {mode.velocity, Vector3::Zero()}, pull),
+                       under, n);
+    mode.until = lift_off;
     return mode;
   }
   Vector3 line = pull;
@@ -74,7 +89,7 @@ DrivenMode driven_mode(const DrivenTouch& touch, const Motion& under) {
     mode.refusal = "a body slides on a curved path";
     return mode;
   }
-  const double most_friction = touch.friction * pressing;
+  const double most_friction = touch.friction * weight;
   Vector3 d = x;  // where it slides
   if (slip.norm() <= touch.still) {
     // What friction must give along x: A - pull.
@@ -82,8 +97,11 @@ DrivenMode driven_mode(const DrivenTouch& touch, const Motion& under) {
     double ends = infinity;
     bool forwards = true;
     for (const double sign : {1.0, -1.0}) {
-      const Polynomial<3> beyond = along(A, x, sign, sign * offset - most_friction);
-      const double s = std::isinf(most_friction) ? infinity : first_positive(beyond, window);
+      double s = infinity;
+      if (!std::isinf(touch.friction)) {
+        const Vector3 axis = constant ? Vector3(sign * x) : Vector3(sign * x - touch.friction * n);
+        s = first_positive(along(A, axis, 1.0, sign * offset - most_friction), window);
+      }
       if (s < ends) {
         ends = s;
         forwards = sign < 0.0;
@@ -91,14 +109,16 @@ DrivenMode driven_mode(const DrivenTouch& touch, const Motion& under) {
     }
     if (ends > at_once * window) {
       mode.slip = Slip::sticks;
-      mode.leans = std::min(touch.friction, (most(A, x, window) + std::abs(offset)) / pressing) * x;
+      const double needed = most(A, x, window) + std::abs(offset);
+      const double share = constant ? needed / weight : needed > 0.0 ? infinity : 0.0;
+      mode.leans = std::min(touch.friction, share) * x;
       mode.motion = under;
       mode.motion.duration = window;
       mode.motion.position[0] = touch.body.pose.position;
       const Quaternion& q = touch.body.pose.orientation;
       mode.motion.quaternion = Polynomial<4>(Vector4(q.w(), q.x(), q.y(), q.z()));
       mode.velocity = v;
-      mode.until = ends;
+      mode.until = std::min(ends, lift_off);
       return mode;
     }
     d = forwards ? x : Vector3(-x);  // it lags behind
@@ -111,18 +131,22 @@ DrivenMode driven_mode(const DrivenTouch& touch, const Motion& under) {
     mode.refusal = "what is rough slides";
     return mode;
   }
-  mode.pushes = pressing * n - most_friction * d;
+  if (!constant) {
+    mode.refusal = "a body slides on what presses it now more and now less";
+    return mode;
+  }
+  mode.pushes = weight * n - most_friction * d;
   mode.leans = -touch.friction * d;
   mode.velocity = v + slip;
   const Vector3 acceleration = pull - most_friction * d;
   Motion own = Motion::ballistic(under.start, window, touch.body.pose,
                                  {mode.velocity, Vector3::Zero()}, acceleration);
   mode.motion = ride(own, under, n);
-  // -(v - V) . d > 0: it has stopped. What begins to slide has had a moment to do so.
+  // -(v - V) . d > 0: it has stopped.
   Polynomial<3> back = along(under.velocity, d, 1.0, -d.dot(mode.velocity));
   back.resize(std::max(back.degree(), 1));
   back[1].x() -= d.dot(acceleration);
-  const double moment = mode.slip == Slip::begins ? 1e-6 * window : 0.0;
+  const double moment = mode.slip == Slip::begins ? begun * window : 0.0;
   mode.until = moment + first_positive(back.shifted(moment), window - moment);
   return mode;
 }

@@ -8,7 +8,7 @@
 namespace kairos {
 inline namespace core {
 
-/// A body that does not turn, on a plane that is driven straight along itself.
+/// A body that does not turn, on a plane that is driven and does not turn either.
 struct DrivenTouch {
   BodyState body;
   Vector3 load = Vector3::Zero();    ///< acceleration without contact forces, m/s^2
@@ -22,16 +22,20 @@ struct DrivenTouch {
 struct DrivenMode {
   std::string refusal;  ///< why that is not known; empty: it is
   Slip slip = Slip::none;
+  bool parts = false;                  ///< the plane draws away from it: nothing else is told
   Motion motion;                       ///< of the body
   Vector3 velocity = Vector3::Zero();  ///< of it now, m/s
+  double pressing = 0.0;               ///< now, m/s^2
   Vector3 pushes = Vector3::Zero();    ///< what the plane gives it, m/s^2, constant if it slides
   Vector3 leans = Vector3::Zero();     ///< largest that friction is, of what presses
-  double until = 0.0;                  ///< when it stops sliding or begins to, s; may be infinite
+  double until = 0.0;                  ///< when this ends, s; may be infinite
 };
 
 /// Sticks as long as friction can give it the acceleration of the plane; slides against mu N
-/// otherwise. Both ends are roots of polynomials, for the motion of the plane is one; `under` is
-/// that, from now on. All must lie on one line: the motion, what slides, what pulls.
+/// otherwise; parts where the plane draws away faster than the load follows. All ends are roots of
+/// polynomials, for the motion of the plane is one; `under` is that, from now on. The motion of the
+/// plane along itself, what slides and what pulls must lie on one line; against friction a body
+/// slides only where what presses is constant.
 [[nodiscard]] DrivenMode driven_mode(const DrivenTouch& touch, const Motion& under);
 
 }  // namespace core

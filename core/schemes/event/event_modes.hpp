@@ -150,7 +150,7 @@ class EventModes {
                          const Adopt& adopt);
   void book_lift(const Gathered& found, Instant t);
   void carry_on(const Gathered& found, const Turning& turning, Instant t, const Adopt& adopt);
-  [[nodiscard]] bool settle_driven(const Gathered& found, Instant t, const Adopt& adopt);
+  [[nodiscard]] bool settle_driven(Gathered found, Instant t, const Adopt& adopt);
   [[nodiscard]] std::vector<Change> join_and_part(const Gathered& found, const FlatMode& mode,
                                                   Instant t);
   void rub(const Gathered& found, const FlatMode& mode, Instant t, std::vector<Change>& changes,

@@ -113,7 +113,7 @@ class EventMotions {
     BodyIndex a = 0;
     BodyIndex b = 0;
     bool slides = false;
-    bool rides = false;               ///< sticks to what is driven
+    bool rides = false;               ///< goes with what is driven
     bool curved = false;              ///< slides: its direction changes, `spent` tells the work
     Vector3 force = Vector3::Zero();  ///< on b, N
     Vector3 along = Vector3::Zero();  ///< its tangential part

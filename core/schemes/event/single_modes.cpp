@@ -6,24 +6,25 @@
 #include "core/schemes/event/gathered_group.hpp"
 #include "core/schemes/event/mode_guards.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace kairos {
 inline namespace core {
-/// One block on one face that is driven, with friction between them.
-bool EventModes::settle_driven(const Gathered& found, Instant t, const Adopt& adopt) {
+/// One block on one face that is driven.
+bool EventModes::settle_driven(Gathered found, Instant t, const Adopt& adopt) {
   const BodyIndex surface = *found.driven;
   const bool alone = found.bodies.size() == 2 && found.pairs.size() == 1;
   const BodyIndex body = alone && found.bodies[0] == surface ? found.bodies[1] : found.bodies[0];
-  if (!alone || !run_.model.is_free(body) || run_.model.friction(body, surface) == 0.0 ||
-      found.group.round[found.place(body)] != 0) {
+  if (!alone || !run_.model.is_free(body) || found.group.round[found.place(body)] != 0) {
     why_not_ = "'" + run_.model.body(surface).name + "' is driven";
     return false;
   }
   const std::size_t k = found.place(body);
   const GroupPatch& patch = found.group.patches[0];
   const bool first = patch.a == k;
+  const Vector3 n = first ? Vector3(-patch.manifold.normal) : patch.manifold.normal;
   if (!(first ? patch.manifold.face_of_b : patch.manifold.face_of_a) || patch.manifold.size < 3 ||
       !found.states[k].twist.angular.isZero(0.0)) {
     why_not_ = "'" + run_.model.body(body).name + "' turns, or lies on no face";
@@ -31,10 +32,19 @@ bool EventModes::settle_driven(const Gathered& found, Instant t, const Adopt& ad
   }
   const Motion whole = motions_.of(surface);
   const Motion under = whole.shifted(std::min(t - whole.start, whole.duration));
+  // The motion of the surface comes in pieces, each cut short at its order: what they leave out
+  // would add up to penetration.
+  double gap = 0.0;
+  for (std::size_t p = 0; p < patch.manifold.size; ++p) {
+    gap = std::min(gap, patch.manifold.points[p].gap);
+  }
+  Vector3& position = found.states[k].pose.position;
+  const Vector3 before = position;
+  position -= gap * n;
   DrivenMode driven =
       driven_mode({.body = found.states[k],
                    .load = found.group.loads[k].linear,
-                   .normal = first ? Vector3(-patch.manifold.normal) : patch.manifold.normal,
+                   .normal = n,
                    .friction = patch.friction,
                    .still = found.group.loads[k].linear.norm() * found.group.instant,
                    .duration = run_.epoch_end() - t},
@@ -42,6 +52,15 @@ bool EventModes::settle_driven(const Gathered& found, Instant t, const Adopt& ad
   why_not_ = driven.refusal;
   if (!why_not_.empty()) {
     return false;
+  }
+  FlatMode mode;
+  mode.velocities = found.group.velocities;
+  mode.accelerations = found.group.loads;
+  mode.kept = {0};
+  if (driven.parts) {
+    run_.account.moved(body, position - before);
+    commit(found, mode, t, adopt);
+    return true;
   }
   // The forces act where the line through its middle along them meets the face.
   const ContactManifold& m = patch.manifold;
@@ -61,19 +80,17 @@ bool EventModes::settle_driven(const Gathered& found, Instant t, const Adopt& ad
     driven.until = std::min(driven.until, face_exit_time(run_.model.shape(surface), under, point,
                                                          m.normal, driven.motion.duration));
   }
-  FlatMode mode;
-  mode.velocities = found.group.velocities;
   mode.velocities[k].linear = driven.velocity;
-  mode.accelerations = found.group.loads;
   mode.accelerations[k].linear += driven.pushes;
   const double mass = run_.model.inertia(body).mass;
   mode.kept = {1};
-  mode.pressing = {mass * std::abs(patch.manifold.normal.dot(found.group.loads[k].linear))};
+  mode.pressing = {mass * driven.pressing};
   mode.rate = {
       std::abs(patch.manifold.normal.dot(found.states[k].twist.linear - under.twist(0.0).linear))};
   mode.slip = {driven.slip};
   mode.force = {(first ? -mass : mass) * driven.pushes};
   mode.slip_ends = {driven.until};
+  run_.account.moved(body, position - before);
   Alone alone_there{driven.motion, false, {}};
   alone_there.motion.start = t;
   commit(found, mode, t, adopt, &alone_there);

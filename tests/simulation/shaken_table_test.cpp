@@ -1,0 +1,116 @@
+// What lies on a table that is driven across its face: it goes with it as long as that presses.
+
+#include "core/reading/scene_reader.hpp"
+#include "simulation/simulate.hpp"
+#include "tests/catch.hpp"
+#include "tests/simulation/ledger_check.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+
+using namespace kairos;
+
+namespace {
+
+constexpr double g = 9.8;
+constexpr double half = 0.1;
+
+std::string block() { return fmt::format("half_extents = [{0}, {0}, {0}]\n", half); }
+std::string ball() { return fmt::format("shape = \"sphere\"\nradius = {}\n", half); }
+
+/// A table that moves as amplitude sin(w t), and a body that lies on it and moves as it does.
+std::string scene(double duration, const Vector3& amplitude, double w, const std::string& shape,
+                  double mu) {
+  const Vector3 v = w * amplitude;
+  return fmt::format(
+      "duration = {}\nframe = {}\nG = {}\nfriction = {}\n"
+      "[[body]]\nname = \"table\"\nentity = \"wall\"\nshape = \"half-space\"\nnormal = [0, 1, 0]\n"
+      "[body.drive]\namplitude = [{}, {}, 0]\nfrequency = {:.17g}\n"
+      "[[body]]\nname = \"load\"\nentity = \"body\"\n{}mass = 1.0\nrestitution = 0.0\n"
+      "position = [0, {}, 0]\nvelocity = [{:.17g}, {:.17g}, 0]\n",
+      duration, duration / 64.0, g, mu, amplitude.x(), amplitude.y(), w / (2.0 * M_PI), shape, half,
+      v.x(), v.y());
+}
+
+const Event* first(const Simulation& sim, EventKind kind) {
+  for (const Event& event : sim.trajectory.events()) {
+    if (event.kind == kind) {
+      return &event;
+    }
+  }
+  return nullptr;
+}
+
+/// When what left the table at t0 is back on it, s: Newton's method in long double.
+double back_on_it(double amplitude, double w, double t0) {
+  const long double a = amplitude;
+  long double t = t0 + 0.25L;
+  for (int i = 0; i < 60; ++i) {
+    const long double s = t - t0;
+    const long double flight = a * std::sin(w * static_cast<long double>(t0)) +
+                               a * w * std::cos(w * static_cast<long double>(t0)) * s -
+                               0.5L * g * s * s;
+    const long double rate =
+        a * w * std::cos(w * static_cast<long double>(t0)) - g * s - a * w * std::cos(w * t);
+    t -= (flight - a * std::sin(w * t)) / rate;
+  }
+  return static_cast<double>(t);
+}
+
+}  // namespace
+
+TEST_CASE("a table that shakes: what lies on it leaves when the table falls faster, and lands") {
+  const double amplitude = 0.05;
+  const double w = 6.0 * M_PI;
+  for (const std::string& shape : {ball(), block()}) {
+    CAPTURE(shape);
+    const std::string text = scene(5.0, {0, amplitude, 0}, w, shape, 0.0);
+    const Simulation sim = simulate(parse_scene(text, "test.toml"), {});
+    INFO(sim.result.reason);
+    REQUIRE(sim.result.status == RunStatus::completed);
+    tests::check_explained(sim.result.ledger);
+    const double leaves = std::asin(g / (amplitude * w * w)) / w;
+    const Event* left = first(sim, EventKind::contact_ends);
+    REQUIRE(left != nullptr);
+    // The drive is a Taylor series of relative error 1e-14, whose second derivative decides.
+    CHECK(std::abs(left->time.seconds - leaves) <= 1e-12);
+    const Event* landed = first(sim, EventKind::impact);
+    REQUIRE(landed != nullptr);
+    CHECK(std::abs(landed->time.seconds - back_on_it(amplitude, w, leaves)) <= 1e-12);
+    CHECK(sim.result.cost.impacts == 15);  // one a period
+  }
+}
+
+TEST_CASE("a table that shakes: what rides on it for long does not sink in") {
+  for (const std::string& shape : {ball(), block()}) {
+    CAPTURE(shape);
+    const std::string text = scene(300.0, {0, 0.05, 0}, 5.56, shape, 0.0);
+    const Simulation sim = simulate(parse_scene(text, "test.toml"), {});
+    INFO(sim.result.reason);
+    REQUIRE(sim.result.status == RunStatus::completed);
+    tests::check_explained(sim.result.ledger);
+    // 8,500 pieces of the drive, cut short by up to 1e-15 m each.
+    for (std::size_t k = 0; k < sim.trajectory.frame_times().size(); ++k) {
+      const auto& bodies = sim.trajectory.frame_state(k);
+      const double gap = bodies[1].pose.position.y() - half - bodies[0].pose.position.y();
+      CHECK(gap >= -1e-16);  // roundoff of what it is a difference of
+      CHECK(gap <= 1e-13);
+    }
+  }
+}
+
+TEST_CASE("a table that shakes aslant: a block sticks while friction of what presses holds it") {
+  const double mu = 0.3;
+  const double w = 10.0;
+  const Vector3 amplitude(0.04, 0.02, 0.0);
+  const Simulation sim =
+      simulate(parse_scene(scene(1.0, amplitude, w, block(), mu), "test.toml"), {});
+  // a w^2 sin = mu (g - b w^2 sin)
+  const double slips = std::asin(mu * g / (w * w * (amplitude.x() + mu * amplitude.y()))) / w;
+  REQUIRE(sim.result.status == RunStatus::stopped);
+  CHECK(sim.result.reason.find("presses it now more and now less") != std::string::npos);
+  CHECK(std::abs(sim.result.end.seconds - slips) <= 1e-12);
+  tests::check_explained(sim.result.ledger);
+}
