@@ -7,7 +7,6 @@
 #include "ccd/triangle_witness.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace kairos::ccd {
@@ -132,16 +131,23 @@ void keep_polished(const CorePair& pair, const GjkResult& found, CoreWitness& wi
 
 /// Corner to corner between slivers GJK ends where rounding lets nothing improve, in a direction
 /// that is off by more than the gap: other starts end elsewhere.
-void start_elsewhere(const CorePair& pair, const std::array<Vector3, 3>& starts, double gap,
-                     CoreWitness& witness) {
-  for (const Vector3& start : starts) {
-    if (witness.separation > 0.5 * gap) {
+void start_elsewhere(const CorePair& pair, const GjkResult& found, CoreWitness& witness) {
+  const auto from = [&](const Vector3& start) {
+    if (witness.separation > 0.5 * found.upper) {
       return;
     }
     const GjkResult other = gjk(pair, start, 0.0);
     if (!other.inside && other.lower > witness.separation) {
       witness.separation = other.lower;
       witness.n = other.n;
+    }
+  };
+  from(found.n);
+  from(witness.n);
+  for (int k = 0; k < 3; ++k) {
+    for (const double sign : {1.0, -1.0}) {
+      from(sign * pair.R_WA.col(k));
+      from(sign * pair.R_WB.col(k));
     }
   }
 }
@@ -185,7 +191,7 @@ CoreWitness core_witness(const CorePair& pair, double reach, double precision, d
     keep_polished(pair, found, witness);
   }
   if (!found.inside && found.upper > 2.0 * error) {
-    start_elsewhere(pair, {found.n, witness.n, -start}, found.upper, witness);
+    start_elsewhere(pair, found, witness);
   }
   if (witness.depth == 0.0 && witness.separation < -2.0 * error) {
     prove_overlap(pair, error, witness);
