@@ -16,7 +16,7 @@
 namespace kairos {
 inline namespace core {
 
-/// An archive ends before what is read from it, or holds what cannot be.
+/// The bytes are no checkpoint: they end too soon, or hold an impossible value.
 class ArchiveError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -25,14 +25,14 @@ class ArchiveError : public std::runtime_error {
 /// Values in a fixed order, written and read by the same code, so that the two cannot differ:
 /// `archive(a, b, c)` writes them, or reads them if the archive was made from bytes.
 ///
-/// Bits, not digits: what comes back is what went in, on a machine of the same kind. What a class
-/// archives is in its member `persist(Archive&)`. Bytes may have been forged: whoever archives an
-/// index or a count checks it with `require` when reading.
+/// Values come back bit for bit, on machines of the same kind. A class archives its members in its
+/// function `persist(Archive&)`. The bytes may have been forged: code that archives an index or a
+/// count checks it with `require` when reading.
 class Archive {
  public:
-  /// To be written.
+  /// An archive to write to.
   Archive() = default;
-  /// To be read; the bytes must outlive it.
+  /// An archive to read from; the bytes must outlive it.
   explicit Archive(std::string_view bytes) : in_(bytes), reading_(true) {}
 
   [[nodiscard]] bool reading() const { return reading_; }
@@ -46,7 +46,7 @@ class Archive {
     (persist(*this, values), ...);
   }
 
-  /// Throws `ArchiveError` where something was read that cannot be. Of no meaning when writing.
+  /// Throws `ArchiveError` if a value that was read is not possible. Does nothing when writing.
   void require(bool possible) const {
     if (reading_ && !possible) {
       throw ArchiveError("holds a number that cannot be");
@@ -73,7 +73,7 @@ requires std::is_arithmetic_v<T>
 void persist(Archive& archive, T& value) { archive.raw(&value, sizeof value); }
 void persist(Archive& archive, bool& value);
 constexpr RotationKind last_of(RotationKind) { return RotationKind::polynomial; }
-/// An enumeration tells its last value, for what is read may be anything:
+/// An enumeration names its last value, so that bytes beyond it are refused:
 /// `constexpr Colour last_of(Colour) { return Colour::blue; }`.
 template <typename T>
 requires std::is_enum_v<T>
@@ -117,8 +117,8 @@ void persist(Archive& archive, std::array<T, N>& values) {
     archive(value);
   }
 }
-/// Where something is there already, as one element per body is, its number is part of the world
-/// and must be the same. What grows as it is read takes no more memory than it has bytes for.
+/// A vector that has elements already (one per body, say) must be read with the same number. An
+/// empty one grows while it is read, so that forged counts cannot take memory without bytes.
 template <typename T>
 void persist(Archive& archive, std::vector<T>& values) {
   const std::size_t there = values.size();

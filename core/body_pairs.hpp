@@ -19,8 +19,8 @@ struct PairRole {
   bool field = false;  ///< acts on what overlaps it
 };
 
-/// Whether two bodies can do anything to each other: one of them moves freely, and if one is a
-/// field, the other is what moves freely, and no field.
+/// Whether two bodies can do anything to each other: at least one moves freely; if one is a field,
+/// the other moves freely and is no field.
 [[nodiscard]] constexpr bool interaction(PairRole a, PairRole b) {
   if (a.field || b.field) {
     return a.field ? b.free && !b.field : a.free;

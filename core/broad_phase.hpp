@@ -28,14 +28,14 @@ struct Aabb {
 class BroadPhase {
  public:
   virtual ~BroadPhase() = default;
-  /// As the registry knows it.
+  /// Its name in the registry.
   [[nodiscard]] virtual std::string_view name() const = 0;
   /// Registers or moves a body; `swept` contains its shape during its current motion.
   virtual void update(BodyIndex body, const Aabb& swept) = 0;
   /// Appends every registered body, other than `body`, whose box could overlap that of `body`.
   /// Order: ascending index, so that runs do not depend on how boxes are stored.
   virtual void candidates(BodyIndex body, std::vector<BodyIndex>& out) const = 0;
-  /// The same of a box that is nobody's; in any order.
+  /// The same for a box that belongs to no body; in any order.
   virtual void overlapping(const Aabb& box, std::vector<BodyIndex>& out) const = 0;
   /// Forgets a body, if it is registered.
   virtual void remove(BodyIndex body) = 0;

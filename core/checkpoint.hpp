@@ -10,7 +10,7 @@ inline namespace core {
 /// Port: who keeps checkpoints of a run.
 ///
 /// A world offers itself after a frame was drawn, as long as nothing that it did depends on how
-/// long the run is to last: whoever goes on from there gets the same bytes as a run that was never
+/// long the run is to last. A run that is resumed there gives the same bytes as one that was never
 /// interrupted, to the same end or to a later one.
 class CheckpointKeeper {
  public:

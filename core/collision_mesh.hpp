@@ -30,9 +30,9 @@ class CollisionMesh {
   [[nodiscard]] const ObbTree& tree() const { return tree_; }
   /// Whether the triangles bound a solid.
   [[nodiscard]] bool solid() const { return kind_ == Kind::solid; }
-  /// Of a solid: a vertex of each part of its surface that hangs together.
+  /// For a solid: one vertex of each connected part of its surface.
   [[nodiscard]] const std::vector<std::uint32_t>& part_vertices() const { return part_vertices_; }
-  /// Of triangles and tree, bytes.
+  /// Memory of triangles and tree, bytes.
   [[nodiscard]] std::size_t memory() const;
 
  private:

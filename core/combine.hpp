@@ -12,13 +12,13 @@ enum class Combine {
   minimum,         ///< min(x_a, x_b)
 };
 inline constexpr std::string_view combine_names[] = {"product", "geometric-mean", "minimum"};
-/// As scene files say it.
+/// The word for it in scene files.
 [[nodiscard]] constexpr std::string_view to_string(Combine how) {
   return combine_names[static_cast<int>(how)];
 }
 
-/// The pair's value, of two that are >= 0 and may be infinite. Symmetric. 0 of one is 0 of the
-/// pair, whatever the other: what is smooth slides on what is rough.
+/// The value of a pair from those of its bodies, >= 0 and possibly infinite. Symmetric. If one is 0
+/// the pair's is 0, whatever the other: a smooth body slides on a rough one.
 [[nodiscard]] double combine(Combine how, double x_a, double x_b);
 
 }  // namespace core

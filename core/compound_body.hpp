@@ -34,7 +34,7 @@ struct PlacedCompound {
 /// About the centre of mass. Throws `std::invalid_argument` without parts, or for parts that are
 /// not convex and bounded.
 [[nodiscard]] PlacedCompound compound_body(std::vector<CompoundPart> parts);
-/// The same where the parts are told; the moments are those about the centre of mass.
+/// The same, but parts stay where they are; the moments are those about the centre of mass.
 [[nodiscard]] std::shared_ptr<const CompoundBody> compound_in_place(
     std::vector<CompoundPart> parts);
 /// All lengths times `size`.

@@ -18,7 +18,7 @@ struct MovingShape {
   const Motion& motion;
 };
 
-/// From when and for how long a query looks.
+/// The stretch of time that a query looks at.
 struct Window {
   Instant start;          ///< within both motions
   double duration = 0.0;  ///< s, >= 0; within both motions; may be infinite where both are
@@ -43,9 +43,9 @@ struct DetectorInfo {
   bool at_step_ends = false;
 };
 
-/// Port: are these two touching, and since when? Stateless; safe to share between threads. What
-/// cannot be answered (an extent that is none, a quaternion that is not unit, a window longer than
-/// a motion, a number that is none) throws `std::invalid_argument`.
+/// Port: are these two touching, and since when? Stateless; safe to share between threads. Queries
+/// without an answer (an extent that is not positive, a quaternion that is not unit, a window
+/// longer than a motion, NaN) throw `std::invalid_argument`.
 class ContactDetector {
  public:
   virtual ~ContactDetector() = default;
@@ -67,9 +67,9 @@ class ContactDetector {
   [[nodiscard]] virtual TimeOfImpact time_of_impact(const MovingShape& a, const MovingShape& b,
                                                     const Window& window,
                                                     double tolerance) const = 0;
-  /// How long after the later of their starts `one` is clear of each of the `others`: before that
-  /// `time_of_impact`, with the same tolerance, tells no contact; infinite: never. Bounds from
-  /// below, s, not for the bits of any answer; the default knows nothing and says 0.
+  /// For each of the `others`, a time before which `time_of_impact` with the same tolerance finds
+  /// no contact with `one`: s after the later of their starts; infinite: never. Lower bounds, used
+  /// to leave queries out and in no answer; the default is 0.
   virtual void clear_times(const BallFlight& one, std::span<const BallFlight> others,
                            double tolerance, std::span<double> clear) const;
   /// Two shapes that overlap at the start: when do they part? `impact` brackets the parting

@@ -27,7 +27,7 @@ enum class EnergyLine : std::size_t {
   projection,           ///< impulses that put velocities back to constraints: p.(u- + u+)/2
 };
 inline constexpr std::size_t energy_line_count = 12;
-/// As the columns of `energy.csv` say it.
+/// The word for it in the columns of `energy.csv`.
 [[nodiscard]] std::string_view to_string(EnergyLine line);
 
 /// Sum that does not lose its small terms [Neumaier1974].

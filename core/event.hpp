@@ -22,7 +22,7 @@ enum class EventKind {
   stick_begins,  ///< they stop sliding: friction holds them
   roll_begins,   ///< a ball stops sliding: it rolls
 };
-/// As `events.csv` says it.
+/// The word for it in `events.csv`.
 [[nodiscard]] std::string_view to_string(EventKind kind);
 
 /// How well the end of a contact mode was located.
@@ -31,7 +31,7 @@ enum class Grade {
   enclosed,  ///< proven by intervals
   sampled,   ///< looked for at so many points, then bisected
 };
-/// As `events.csv` says it.
+/// The word for it in `events.csv`.
 [[nodiscard]] std::string_view to_string(Grade grade);
 
 /// Something that happened between two bodies.

@@ -6,18 +6,18 @@
 namespace kairos {
 inline namespace core {
 
-/// What a scene and its model take for each body, bytes: some more than was measured of balls.
+/// Memory of a scene and its model per body, bytes: a little more than was measured with balls.
 inline constexpr double bytes_in_model = 1536.0;
-/// The same of a run beside that; `event-driven` takes most of all schemes.
+/// Memory of a run per body beside that; `event-driven` takes most of all schemes.
 inline constexpr double bytes_in_run = 4096.0;
 
 /// Memory that this process may still take, bytes: what is free on the machine, within the control
-/// group and within the limit of its address space, whichever is least. As Linux tells it; infinite
-/// where nobody tells.
+/// group and within the limit of its address space, whichever is least. Read from Linux; infinite
+/// on other systems.
 [[nodiscard]] double free_memory();
 
-/// Why so many bodies of so many bytes each do not fit into that: the bytes, and how many bodies
-/// would. Empty if they do.
+/// Why so many bodies of so many bytes each do not fit into that memory: a text that names the
+/// bytes and how many bodies would fit. Empty if they fit.
 [[nodiscard]] std::string why_no_room(std::size_t bodies, double bytes_a_body, double free);
 
 }  // namespace core

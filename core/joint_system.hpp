@@ -57,18 +57,18 @@ class JointSystem {
   /// Velocities back to r' = 0.
   JointProjection project_velocities(Instant t, std::span<BodyState> states) const;
 
-  /// r and r' of every row, for who solves the constraints by himself; `rows` each.
+  /// r and r' of every row, for steppers that solve the constraints; `rows` each.
   void residuals(Instant t, std::span<const BodyState> states, std::span<double> r,
                  std::span<double> rates) const;
   /// Adds J^T x to the wrenches, x one number per row.
   void react(Instant t, std::span<const BodyState> states, std::span<const double> x,
              std::span<Wrench> wrenches) const;
-  /// The x with which joints answer to these wrenches, which are all others.
+  /// The x of the joints (one number per row) where `wrenches` are all other forces.
   void multipliers(Instant t, std::span<const BodyState> states, std::span<const Wrench> wrenches,
                    std::span<double> x) const;
 
-  /// What impulses leave of the changes of velocity that they would make, one per body, once the
-  /// joints have passed them on; returns the work of driven sides in it, J.
+  /// Changes of velocity by impulses, one per body: replaces those without joints by those that are
+  /// left when the joints have passed the impulses on. Returns the work of driven sides, J.
   double pass_on(Instant t, std::span<const BodyState> states, std::span<Twist> changes) const;
 
  private:

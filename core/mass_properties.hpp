@@ -7,7 +7,7 @@
 namespace kairos {
 inline namespace core {
 
-/// Of a homogeneous solid of density 1 (kg/m^3): times a density, or a mass over the volume.
+/// A homogeneous solid of density 1 kg/m^3; multiply by a density, or by mass over volume.
 struct MassProperties {
   double volume = 0.0;                       ///< m^3
   Vector3 centre = Vector3::Zero();          ///< of mass, frame of the vertices, m
@@ -26,8 +26,8 @@ struct MassProperties {
 [[nodiscard]] MassProperties mass_properties(std::span<const Vector3> vertices,
                                              std::span<const Triangle> triangles);
 
-/// Are the axes of an inertia principal ones, to the roundoff of its integrals: what is off its
-/// diagonal at most 1e-12 of its trace? Then they are kept as they were told.
+/// Whether the axes of an inertia are principal up to the roundoff of its integrals: off-diagonal
+/// entries are at most 1e-12 of the trace. Such axes are kept as given.
 [[nodiscard]] bool is_principal(const Matrix3& inertia);
 
 }  // namespace core

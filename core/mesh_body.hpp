@@ -15,9 +15,9 @@ struct MeshBody {
   explicit MeshBody(MeshData data, CollisionMesh::Kind kind) : mesh(std::move(data), kind) {}
 
   CollisionMesh mesh;
-  /// Vertices that may be highest along a direction (those of the convex hull, or all of many), and
-  /// sizes; no faces. Its width is the least extent along the axes, of a flat mesh 1e-3 of its
-  /// radius: a size of it, where one is needed.
+  /// Vertices that can be highest along a direction (those of the convex hull, or all if there are
+  /// many), and sizes; no faces. Its width is the least extent along the axes; a flat mesh has 1e-3
+  /// of its radius instead.
   Polytope outline;
   Vector3 half_extents = Vector3::Zero();    ///< of the box about the origin, m
   double area = 0.0;                         ///< m^2

@@ -37,8 +37,8 @@ struct Decision {
 class Model {
  public:
   /// Throws `InputError` where the scene cannot work: a free body with no mass, a bat that nothing
-  /// drives, a number that is not finite. Solids that overlap at the start are for those to refuse
-  /// who have a detector.
+  /// drives, a number that is not finite. Solids that overlap at the start are not refused here:
+  /// that takes a detector.
   explicit Model(Scene scene, const ModelOptions& options = {});
 
   /// As it was given.
@@ -78,7 +78,7 @@ class Model {
   [[nodiscard]] bool has_friction() const { return has_friction_; }
 
   /// Pairs to test, in the order of creation: those that can ever interact; with `prune_pairs` off
-  /// all pairs, of which still only those do anything to each other that `interacts`.
+  /// all pairs; still only those that `interacts` allows do anything.
   [[nodiscard]] const BodyPairs& pairs() const { return pairs_; }
   /// Whether a and b can ever do anything to each other.
   [[nodiscard]] bool interacts(BodyIndex a, BodyIndex b) const {
@@ -97,12 +97,12 @@ class Model {
   /// True if the island moves in closed form: a parabola, and a rotation that is left out or of
   /// constant rate.
   [[nodiscard]] bool closed_form(std::size_t island) const { return closed_form_[island]; }
-  /// True if it would but for a body that can tumble: a free top between impacts, which has a
+  /// True if it would be so without a body that can tumble: a free top between impacts, which has a
   /// closed form of its own (elliptic functions).
   [[nodiscard]] bool tumbles(std::size_t island) const { return tumbles_[island]; }
   /// Name of the broad phase that the scene needs.
   [[nodiscard]] std::string_view broad_phase() const { return broad_phase_; }
-  /// Whether that asks every pair, so that nobody has to be found.
+  /// Whether that asks every pair, so that nothing has to be searched.
   [[nodiscard]] bool asks_every_pair() const { return broad_phase_ == every_pair; }
 
   /// Hands and what they hold, in the order of creation of the hands.

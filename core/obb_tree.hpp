@@ -22,7 +22,7 @@ class ObbChild {
   [[nodiscard]] bool is_triangle() const { return (code_ & leaf_bit) != 0; }
   /// The i of the node or triangle.
   [[nodiscard]] std::uint32_t index() const { return code_ & ~leaf_bit; }
-  /// Any order that is the same everywhere.
+  /// An arbitrary order, the same on every machine.
   friend auto operator<=>(const ObbChild&, const ObbChild&) = default;
 
  private:

@@ -26,7 +26,7 @@ struct PeriodicBox {
   Vector3 highest = Vector3::Zero();
   std::array<bool, 3> along{};  ///< whether it is repeated along x, y, z
 
-  /// After what way along an axis everything is the same again, m; 0 along the others.
+  /// Length of the box along the axes on which it is repeated, m; 0 along the others.
   [[nodiscard]] Vector3 period() const;
   /// From a body to its image, m.
   [[nodiscard]] Vector3 shift(const Image& n) const;

@@ -15,7 +15,7 @@ class Archive;
 
 /// What a scheme does in a frame, for the flow diagrams of figs. 7 and 15.
 enum class Stage { draw, calculate_positions, restrict_movement, detect, handle, advance, locate };
-/// As the flow diagrams say it.
+/// The word for it in the flow diagrams.
 [[nodiscard]] std::string_view to_string(Stage stage);
 
 /// A rendered frame: the world as a person sees it.
@@ -36,7 +36,7 @@ class Recorder {
   virtual ~Recorder() = default;
   /// Once, before anything else; the model outlives the run.
   virtual void begin(const Model& /*model*/) {}
-  /// Whether `motion` is of interest: schemes that need none for themselves then make none.
+  /// Whether `motion` is wanted: if not, schemes that need none for themselves make none.
   [[nodiscard]] virtual bool wants_motions() const { return false; }
   /// A frame is drawn: at the start, after each frame, at the end.
   virtual void frame(const Frame& /*frame*/) {}
@@ -47,8 +47,8 @@ class Recorder {
   virtual void event(const Event& /*event*/) {}
   /// A stage of the flow of events; `fraction` of the frame done (fig. 15).
   virtual void stage(Stage /*stage*/, double /*fraction*/) {}
-  /// Writes what it has gathered so far to a checkpoint, or reads it back (after `begin`). False,
-  /// and nothing done, where it cannot: its run then leaves no checkpoint.
+  /// Writes what it has gathered so far to a checkpoint, or reads it back (after `begin`). Returns
+  /// false and does nothing where it cannot: its run then leaves no checkpoint.
   virtual bool persist(Archive& /*archive*/) { return false; }
 };
 

@@ -26,7 +26,7 @@ using SweptBounds = std::function<Aabb(const MovingShape&, const Window&)>;
 /// Makes a broad phase for that many bodies.
 using BroadPhaseFactory = std::function<std::unique_ptr<BroadPhase>(std::size_t bodies)>;
 
-/// The three choices beside the scheme. Nothing here knows of any other.
+/// The choices of a method beside the scheme. A scheme sees them only through these ports.
 struct Method {
   IslandStepperFactory stepper;
   std::shared_ptr<const ContactDetector> detector;
@@ -34,8 +34,8 @@ struct Method {
   BroadPhaseFactory broad_phase;
   SweptBounds swept_bounds;                 ///< what a broad phase is told
   NeighbourhoodFactory neighbourhood = {};  ///< the same where each body has a time of its own
-  /// Moves bodies that turn while they touch, whatever moves the others; empty: nothing does. Told
-  /// is how long its first step may be expected to be, s.
+  /// Makes the stepper of bodies that turn while they touch, whatever moves the others; empty:
+  /// there is none. Its argument is the expected length of the first step, s.
   std::function<std::unique_ptr<Stepper>(double first_step)> contact_stepper = {};
 };
 
@@ -94,8 +94,8 @@ struct SchemeInfo {
   std::string_view source;
   bool needs_location = false;  ///< needs a detector that locates
   bool friction = false;        ///< treats friction, where a scene has it
-  /// Where it moves bodies by a method of its own: what that is called. No other integrator then
-  /// has a part in the run, and only `auto` or this name are taken.
+  /// The name of its own way to move bodies, if it has one. No other integrator then takes part in
+  /// the run, and only `auto` or this name are accepted.
   std::string_view integrator = {};
   bool joints = false;    ///< holds bodies together where a scene has joints
   bool periodic = false;  ///< knows the images of bodies where a scene is periodic

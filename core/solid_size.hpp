@@ -5,7 +5,7 @@
 namespace kairos {
 inline namespace core {
 
-// Of the homogeneous solid that a shape is; a half-space has neither: 0.
+// Sizes of the solid that a shape encloses; 0 for a half-space, which has none.
 
 [[nodiscard]] double solid_volume(const Shape& shape);  ///< m^3
 [[nodiscard]] double surface_area(const Shape& shape);  ///< m^2

@@ -58,7 +58,7 @@ struct ReplayedStep {
 class Stepper {
  public:
   virtual ~Stepper() = default;
-  /// What it is now: a closed form that gave up tells another order.
+  /// What it is now: a closed form that has given up has another order.
   [[nodiscard]] virtual StepperInfo info() const = 0;
 
   /// Whether it can advance this island at all; a non-empty string is the reason why not.

@@ -18,7 +18,7 @@ enum class ToiStatus {
   /// goes on from there.
   undecided,
 };
-/// As `kairos toi` says it.
+/// The word for it in the output of `kairos toi`.
 [[nodiscard]] std::string_view to_string(ToiStatus status);
 
 /// When two moving shapes first touch. Times are local: seconds from the start of the window.

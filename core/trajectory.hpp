@@ -20,7 +20,7 @@ class Trajectory : public Recorder {
   [[nodiscard]] const std::vector<Event>& events() const { return events_; }
   /// Motions of one body, in order; each is valid until the next one starts.
   [[nodiscard]] const std::vector<Motion>& motions(BodyIndex body) const { return motions_[body]; }
-  /// Of the frames that were drawn.
+  /// Times of the frames that were drawn.
   [[nodiscard]] const std::vector<Instant>& frame_times() const { return frame_times_; }
   /// Bodies as drawn in frame n.
   [[nodiscard]] const State& frame_state(std::size_t n) const { return frames_[n]; }

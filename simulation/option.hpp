@@ -26,9 +26,9 @@ enum class OptionKind {
 /// A value as a person gives it: text as on a command line, or a typed value as in a spec.
 using OptionValue = std::variant<std::string, double, bool>;
 
-/// Something that a run can be told. The table of them is the one place that knows its name, unit,
-/// range, default and meaning: the command line, sweep specs, summaries, checkpoints, the identity
-/// of a run and bindings read it from here.
+/// One option of a run. The table of them is the one place that knows its name, unit, range,
+/// default and meaning: the command line, sweep specs, summaries, checkpoints, the identity of a
+/// run and bindings read it from here.
 struct Option {
   std::string_view name;  ///< in specs, summaries and bindings
   std::string_view flag;  ///< on the command line, without the leading --
@@ -40,7 +40,7 @@ struct Option {
   /// Sets a value that was checked: `text` for names and frames, `number` for the rest.
   void (*put)(RunChoice& choice, double number, const std::string& text) = nullptr;
 
-  /// What it is where nobody says otherwise, as text.
+  /// The default, as text.
   [[nodiscard]] std::string default_text() const { return get(RunChoice{}); }
 };
 

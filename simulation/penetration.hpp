@@ -20,7 +20,7 @@ struct Penetration {
 };
 
 /// How deep solids are inside each other at one instant, by the exact distance of their shapes and
-/// whatever detector a run uses. Pairs of which neither is free are left alone: nobody could part
+/// whatever detector a run uses. Pairs without a free body are left alone: nothing could part
 /// them.
 ///
 /// Where there are many bodies, only those are asked that a broad phase finds near each other. In a
@@ -38,7 +38,7 @@ class PenetrationProbe {
   /// hand (see `Frame::in_hand`) has no contacts and penetrates nothing.
   [[nodiscard]] std::optional<Penetration> deepest(std::span<const BodyState> bodies,
                                                    std::span<const char> in_hand = {}) const;
-  /// How deep two solids are inside each other, m; 0 if they are not, or nobody could part them.
+  /// How deep two solids are inside each other, m; 0 if they are not, or neither is free.
   [[nodiscard]] double depth(BodyIndex a, const Pose& pose_a, BodyIndex b,
                              const Pose& pose_b) const;
   /// The first pair that penetrates.

@@ -8,8 +8,8 @@
 namespace kairos {
 inline namespace simulation {
 
-// What a query about two bodies may hold, whether it comes as a row of a file or as arrays: what
-// the detectors accept. Each function says what is wrong; empty: nothing is.
+// The numbers that a query about two bodies may hold, as a row of a file or as arrays: those that
+// detectors accept. Each function returns what is wrong; empty: nothing is.
 
 /// Largest magnitude of any number but times, and of any distance that a motion leads to.
 inline constexpr double largest_magnitude = ccd::greatest_size;

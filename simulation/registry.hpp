@@ -22,7 +22,7 @@ struct IntegratorEntry {
 
 /// All schemes, the thesis' own first.
 [[nodiscard]] std::span<const std::shared_ptr<const Scheme>> schemes();
-/// Of another name than the others: `integrators` is the namespace that they live in.
+/// All integrators; not called `integrators`, which is their namespace.
 [[nodiscard]] std::span<const IntegratorEntry> integrator_entries();
 /// All detectors.
 [[nodiscard]] std::span<const std::shared_ptr<const ContactDetector>> detectors();
@@ -51,7 +51,7 @@ struct IntegratorEntry {
 /// The same for bodies that each move from a time of their own; a broad phase of boxes then has
 /// windows.
 [[nodiscard]] NeighbourhoodFactory find_neighbourhood(std::string_view name);
-/// What a broad phase is told of a moving shape.
+/// The box that a broad phase is given of a moving shape.
 [[nodiscard]] SweptBounds swept_bounds();
 
 }  // namespace simulation

@@ -58,7 +58,7 @@ class MetricsRecorder : public Recorder {
   void event(const Event& event) override;
   bool persist(Archive& archive) override;
 
-  /// Of what has been recorded so far.
+  /// The metrics of what has been recorded so far.
   [[nodiscard]] const RunMetrics& metrics() const { return metrics_; }
 
  private:

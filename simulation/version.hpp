@@ -8,9 +8,9 @@
 namespace kairos {
 inline namespace simulation {
 
-/// Of kairos.
+/// The version of kairos.
 [[nodiscard]] std::string_view version();
-/// Of kairos and of what decides the bits of a run: name and version.
+/// Name and version of kairos and of all that decides the bits of a run.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> versions();
 
 }  // namespace simulation

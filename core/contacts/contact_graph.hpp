@@ -45,7 +45,7 @@ class ContactGraph {
   [[nodiscard]] bool joins(BodyIndex i, BodyIndex j) const {
     return patches_.contains({i, j}) || patches_.contains({j, i});
   }
-  /// Whom body i touches, in the order of names: a run that is resumed goes on as it would have.
+  /// The bodies that body i touches, in the order of names, so that a resumed run goes on alike.
   [[nodiscard]] const std::vector<BodyIndex>& partners(BodyIndex i) const { return partners_[i]; }
 
   Patch& join(BodyIndex a, BodyIndex b);

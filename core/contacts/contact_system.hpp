@@ -45,11 +45,11 @@ struct ContactSystem {
   [[nodiscard]] Eigen::VectorXd rates(const std::vector<Twist>& v) const;
   /// v += M^-1 J^T impulse.
   void push(const Eigen::VectorXd& impulses, std::vector<Twist>& v) const;
-  /// The nearest v for which J v = 0, nearest as the kinetic energy measures it; twice, so that
-  /// what is left is roundoff of what is left.
+  /// Projects v onto J v = 0, in the metric of the kinetic energy; twice, so that only the roundoff
+  /// of a residual is left.
   void project(std::vector<Twist>& v) const;
-  /// Gives bodies back the linear velocities `before` a change that leads them along a row, faster
-  /// than before and by more than a small part of how they move.
+  /// Undoes a change of linear velocities (from `before` to `v`) for bodies that it moves along a
+  /// row faster than before, unless the difference is a small part of their speed.
   void undo_where_faster(const std::vector<Twist>& before, std::vector<Twist>& v) const;
 };
 

@@ -42,8 +42,8 @@ struct ContactGroup {
   double instant = 0.0;  ///< s; what happens within it happens at once
 };
 
-/// How a group goes on whose contact forces and loads stay what they are: bodies move on parabolas
-/// and do not turn, or one turns steadily about the normal of the only patch that it has.
+/// How a group moves while its contact forces and loads stay constant: bodies move on parabolas and
+/// do not turn, or a body turns steadily about the normal of its only patch.
 struct FlatMode {
   std::string refusal;            ///< why it does not go on like that; empty: it does
   std::vector<Twist> velocities;  ///< with nothing left along the normals that are kept
@@ -65,9 +65,9 @@ struct FlatModeOptions {
                           ///< collapse
 };
 
-/// Proposes who presses and who parts (complementarity of accelerations, without friction), and
-/// verifies it: signs, that nothing turns that must not, that normals stay. Velocities along the
-/// normals that are kept are projected out, nearest as the kinetic energy measures.
+/// Proposes which patches press and which part (complementarity of accelerations, no friction) and
+/// verifies that signs are right, no body turns that must not, and normals stay. Velocities along
+/// the kept normals are projected out in the metric of the kinetic energy.
 [[nodiscard]] FlatMode flat_mode(const ContactGroup& group, const FlatModeOptions& options);
 
 }  // namespace core

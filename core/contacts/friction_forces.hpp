@@ -27,9 +27,9 @@ struct FrictionChoice {
   Vector3 direction = Vector3::Zero();  ///< of b along a, unit, where it slides or begins to
 };
 
-/// The verifier of `friction_mode`: whether a proposed way to go on has accelerations that the
-/// touches allow and forces inside their cones that bring these about. Bodies have three degrees of
-/// freedom, spheres that turn six; that nothing else turns is for the forces to show.
+/// Verifies proposals of `friction_mode`: are there accelerations that the touches allow, and
+/// forces inside their cones that cause them? Bodies have three degrees of freedom, spheres that
+/// turn six; that no other body turns has to follow from the forces.
 class FrictionForces {
  public:
   struct Solution {
@@ -54,8 +54,8 @@ class FrictionForces {
 
   /// Accelerations that the constraints allow, and forces inside the cones that bring them about.
   [[nodiscard]] std::optional<Solution> solve(const std::vector<FrictionChoice>& choices);
-  /// Nothing is left along the normals, nor where it sticks: the nearest velocities, as the kinetic
-  /// energy measures.
+  /// Projects out velocities along the normals, and along the surface where it sticks, in the
+  /// metric of the kinetic energy.
   void slow_down(const std::vector<FrictionChoice>& choices, std::vector<Twist>& velocities) const;
 
  private:

@@ -9,13 +9,13 @@
 namespace kairos {
 inline namespace core {
 
-/// What an impact law may also know: what an impact does to several bodies in touch, at once. An
-/// `ImpactLaw` that is a `GroupLaw` too is asked this where bodies hang together.
+/// What an impact law may also offer: the impact of several bodies in touch, at once. An
+/// `ImpactLaw` that is also a `GroupLaw` is asked where several bodies are in touch.
 class GroupLaw {
  public:
   virtual ~GroupLaw() = default;
-  /// Whether it takes all that touches into an impact; otherwise only what is held together by
-  /// contact that lasts, and bodies that merely touch are struck pair by pair.
+  /// Whether an impact includes all bodies in touch. If not, it includes those that lasting contact
+  /// holds together; bodies that merely touch are struck pair by pair.
   [[nodiscard]] virtual bool takes_what_touches() const = 0;
   /// Changes the velocities, one per body of the system, so that no row approaches any more. Rows
   /// approach or rest when it is asked; `restitution`, one per row. Returns the impulses, N s, of

@@ -14,7 +14,7 @@ inline namespace core {
 /// force. After each of its steps the states are put back onto the constraints, positions first and
 /// then velocities, nearest as the masses measure; a method of order p is off by O(h^(p+1)) after a
 /// step, so that this costs no order [Hairer2006, IV.4]. The dense output is bent by cubics, so
-/// that it begins and ends where the states are; between, it is off by what it was.
+/// that it begins and ends at the states; in between its error is as before.
 ///
 /// Methods of one step go on from the states as they were put back. Multistep methods keep their
 /// history: what is put back are the states that they show, until their own have drifted by

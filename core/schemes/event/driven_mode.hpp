@@ -18,7 +18,7 @@ struct DrivenTouch {
   double duration = 0.0;  ///< s, that is looked at
 };
 
-/// How it goes on, and until when.
+/// How the body moves, and until when.
 struct DrivenMode {
   std::string refusal;  ///< why that is not known; empty: it is
   Slip slip = Slip::none;
@@ -31,11 +31,11 @@ struct DrivenMode {
   double until = 0.0;                  ///< when this ends, s; may be infinite
 };
 
-/// Sticks as long as friction can give it the acceleration of the plane; slides against mu N
-/// otherwise; parts where the plane draws away faster than the load follows. All ends are roots of
-/// polynomials, for the motion of the plane is one; `under` is that, from now on. The motion of the
-/// plane along itself, what slides and what pulls must lie on one line; against friction a body
-/// slides only where what presses is constant.
+/// The body sticks as long as friction can give it the acceleration of the plane, slides against
+/// mu N otherwise, and parts where the plane draws away faster than the load follows. All of these
+/// end at roots of polynomials, since the motion of the plane, `under`, is one (from now on). The
+/// motion of the plane along itself, the sliding and the pull must lie on one line; against
+/// friction a body slides only where what presses is constant.
 [[nodiscard]] DrivenMode driven_mode(const DrivenTouch& touch, const Motion& under);
 
 }  // namespace core

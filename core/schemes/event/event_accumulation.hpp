@@ -10,10 +10,10 @@
 namespace kairos {
 inline namespace core {
 
-/// Whether impacts accumulate: infinitely many of them in a finite time, which no number of events
-/// gets past, or a contact that lasts and is none of those that are kept. Reasons from what is
-/// known: restitutions, speeds, gaps and what presses. Elastic balls meet finitely often, however
-/// fast [Vaserstein1979]: where nothing is lost, nothing is called a collapse.
+/// Decides whether impacts accumulate: infinitely many in a finite time, which no number of events
+/// gets past, or a lasting contact of a kind that is not kept. It reasons from restitutions,
+/// speeds, gaps and the forces that press. Elastic balls meet finitely often, however fast
+/// [Vaserstein1979]: where no energy is lost, nothing is called a collapse.
 class EventAccumulation {
  public:
   EventAccumulation(EventRun& run, const EventMotions& motions);

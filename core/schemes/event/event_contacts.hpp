@@ -23,20 +23,20 @@ class EventContacts {
   void impact(BodyIndex a, BodyIndex b, Instant t, double patience, bool decided);
   void cross_field(BodyIndex a, BodyIndex b, Instant t, bool entering);
 
-  /// Two solids touch and would go on to do so.
+  /// Two solids touch and will stay in touch.
   void stay(BodyIndex a, BodyIndex b, Instant t);
   /// The bounces of a ball have died down: told once, if it is still there.
   void begin_contact(BodyIndex a, BodyIndex b, Instant t);
   /// A group of bodies in touch goes on otherwise: a patch is at its end, or an epoch is.
   void settle_anew(BodyIndex i, Instant t);
   [[nodiscard]] const EventModes& modes() const { return modes_; }
-  /// What is in a hand from now on is held by nothing else.
+  /// A body that a hand has grasped is held by no contact any more.
   void take_out(BodyIndex i, Instant t);
-  /// A supported ball is so no longer; takes effect with its next launch.
+  /// A ball is no longer supported; takes effect with its next launch.
   void end_contact(BodyIndex i, Instant t);
-  /// A supported ball comes to the end of its surface, or that draws away.
+  /// A supported ball comes to the end of its surface, or the surface draws away.
   void leave_support(BodyIndex i, Instant t);
-  /// A driven surface has a new motion: what lies on it follows or flies.
+  /// A driven surface has a new motion: the bodies on it follow or leave it.
   void carry_riders(BodyIndex surface, Instant t);
 
   void persist(Archive& archive);

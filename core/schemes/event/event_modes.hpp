@@ -19,9 +19,9 @@ inline namespace core {
 /// Contact that lasts among several bodies: who holds whom, since when, and until what happens.
 ///
 /// A group of bodies in touch is *settled*: `flat_mode` says who presses, and that nothing turns
-/// that must not; the pairs that stay join the contact graph, where no detector is asked about
-/// them, and their bodies move in closed form. What ends this (an impact, a field, a body that
-/// comes to the rim of what carries it) settles the group anew.
+/// that must not. The pairs that stay join the contact graph (no detector is asked about them), and
+/// their bodies move in closed form. What ends this (an impact, a field, a body that comes to the
+/// rim of what carries it) settles the group anew.
 class EventModes {
  public:
   EventModes(EventRun& run, EventMotions& motions, EventPredictor& predictor,

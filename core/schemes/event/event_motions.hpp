@@ -59,12 +59,12 @@ class EventMotions {
   }
   /// Whether i is a ball on a parabola until it is launched again, and held by nothing.
   [[nodiscard]] bool flies(BodyIndex i) const { return flies_[i] != 0; }
-  /// Where the ball is that bounds body i; its radius is infinite where that is on no parabola, or
-  /// the body has no end.
+  /// The ball that bounds body i, on its way; its radius is infinite if it is on no parabola, or
+  /// the body is unbounded.
   [[nodiscard]] const BallFlight& flight(BodyIndex i) const { return flights_[i]; }
   [[nodiscard]] BodyState at(BodyIndex i, Instant t) const;
-  /// States of the event at hand, by body: an event brings here what it looks at, changes it, and
-  /// launches from it. Of no meaning otherwise, except of what is fixed.
+  /// Scratch of the event at hand, by body: an event brings a state here, changes it, and launches
+  /// the body from it. Meaningless otherwise, except for fixed bodies.
   [[nodiscard]] BodyState& now(BodyIndex i) { return now_[i]; }
   [[nodiscard]] const BodyState& now(BodyIndex i) const { return now_[i]; }
   void bring(BodyIndex i, Instant t) {
@@ -156,7 +156,7 @@ class EventMotions {
   /// The fields that body i is in; they act from the next launch on.
   [[nodiscard]] std::vector<BodyIndex>& fields(BodyIndex i) { return bodies_[i].fields; }
   [[nodiscard]] bool is_in_field(BodyIndex i, BodyIndex field) const;
-  /// Whether a force takes energy from it: hops die down whatever the restitution.
+  /// Whether a force takes energy from i, so that hops die down whatever the restitution.
   [[nodiscard]] bool is_damped(BodyIndex i) const;
   /// What surface and forces do to a ball on it, m/s^2: a_s.n - F.n / m, positive while it is
   /// pressed; the ball alone in its island and at `now`. `held`: the surface that supports it

@@ -11,9 +11,9 @@ inline namespace core {
 
 class Archive;
 
-/// The latest impacts of a body, as far as they hang together: whether infinitely many of them may
-/// follow each other in a finite time (Zeno), which no number of events gets past. Ways are
-/// measured between the two bodies that meet: whoever watches moves as he likes.
+/// The latest connected impacts of a body, which tell whether infinitely many of them may follow
+/// each other in a finite time (Zeno), which no number of events gets past. Distances are those
+/// between the two bodies that meet, so that no observer matters.
 class ImpactHistory {
  public:
   /// An impact at t.

@@ -38,7 +38,7 @@ class WorkBudget {
     BodyIndex b = 0;
     double share = 0.0;
   };
-  /// Who the latest events were between: the busiest pairs first, those of less than a tenth left
+  /// The pairs of the latest events, the busiest first; pairs with less than a tenth are left
   /// out.
   [[nodiscard]] std::vector<Share> busiest() const;
 

@@ -16,13 +16,13 @@ class FrameContacts {
   /// 13.5: the two exchange what their entities and the impact law say, which changes the states;
   /// a field gives its force instead.
   void handle(BodyIndex a, BodyIndex b, BodyState& state_a, BodyState& state_b, Instant t);
-  /// Tells what is in no field any more, of those it was in when this was last called.
+  /// Tells which bodies have left a field since this was last called.
   void tell_fields_left();
 
   void persist(Archive& archive);
 
  private:
-  /// Something falls into a field or not: seen in the latest detection.
+  /// A body in a field; `seen`: in the latest detection, too.
   struct FieldContact {
     BodyIndex field = 0, body = 0;
     bool seen = false;

@@ -30,7 +30,7 @@ class FrameMotions {
   [[nodiscard]] const Motion& path_motion(BodyIndex i, double s) const;
   /// Longest stretch from s on, at most to `until`, on which neither path changes its motion, s.
   [[nodiscard]] double common_stretch(BodyIndex a, BodyIndex b, double s, double until) const;
-  /// The island of i has come as far as s: its path ends there, and the ledger knows.
+  /// The island of i has come as far as s: its path ends there, and the ledger follows to there.
   void cut(BodyIndex i, double s);
   /// The rest of the proposal of the island of i, which a contact at s has put where `meeting`
   /// says (by body).

@@ -52,8 +52,8 @@ class EnergyAccount {
   /// `motions`: one per body of the island, covering [start, start + duration].
   void leg(const Leg& leg, std::span<const Motion> motions, Instant start, double duration);
 
-  /// What a surface does that takes up the `forces` on the ball it carries, along its unit
-  /// `normal`, J: minus the work of their normal component along the ball's motion.
+  /// Work of a surface that carries a ball against the `forces` on it, along its unit `normal`, J:
+  /// minus the work of their normal component along the motion of the ball.
   [[nodiscard]] double bearing_work(std::span<const Force* const> forces, const Motion& motion,
                                     const Vector3& normal, Instant start, double duration);
 
@@ -73,8 +73,8 @@ class EnergyAccount {
   void carried(const Island& island, Instant t, std::span<const BodyState> from,
                std::span<const BodyState> to);
 
-  /// An impact changed its velocities: what it took up and gave back, turned into spin, out of it,
-  /// or handed on is no gain or loss, but it is a flow.
+  /// An impact changed the velocities of i: energy that it stored and gave back, turned into spin
+  /// or out of it, or handed on is neither gain nor loss, but counts as flow.
   void struck(BodyIndex i, const BodyState& before, const BodyState& after);
 
   /// Kinetic energy that body i gained from one velocity to another at the same place, J.

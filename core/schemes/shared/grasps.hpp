@@ -36,7 +36,7 @@ class Grasps {
   }
   /// By body: 1 where it has no contacts.
   [[nodiscard]] std::span<const char> in_hand() const { return in_hand_; }
-  /// The grip of which one of the two is the hand and the other is leaving it, if there is one.
+  /// The grip in which one of the two is the hand and the other leaves it, if there is one.
   [[nodiscard]] std::optional<std::size_t> leaving(BodyIndex a, BodyIndex b) const;
 
   void persist(Archive& archive);

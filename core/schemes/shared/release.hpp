@@ -9,10 +9,10 @@
 namespace kairos {
 inline namespace core {
 
-/// Why what a hand has held cannot have contacts again where it is, at time t: it is inside a
-/// solid, and no scheme can tell what comes of that; empty if it can. Both are named, and how deep.
-/// Asked when the hand lets go of it, and when it is clear of the hand. The hand itself, and what
-/// is in other hands, do not count. `pose`: where a body is now.
+/// Why a body that a hand has held cannot have contacts again at time t: it is inside a solid, and
+/// no scheme can tell what follows; empty if it can. Both are named, and how deep. Asked when the
+/// hand lets go of it, and when it is clear of the hand. The hand itself, and what is in other
+/// hands, do not count. `pose`: where a body is now.
 ///
 /// Tolerance (roundoff): 16 eps times the coordinates and extents is touching.
 [[nodiscard]] std::string why_not_released(const SchemeRun& run, const Grasps& grasps,

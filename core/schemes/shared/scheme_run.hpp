@@ -35,10 +35,10 @@ class SchemeRun {
   /// caller knows on which lines they belong. `flat`: the impact turns spheres only.
   ImpactEnergy exchange(Event& event, BodyState& a, BodyState& b, Vector3& force_a,
                         Vector3& force_b, bool flat = false);
-  /// Inertia of body i as an impact sees it that turns nothing but spheres.
+  /// Inertia of body i in an impact that turns spheres only.
   [[nodiscard]] BodyInertia flat_inertia(BodyIndex i) const;
-  /// From where a body is computed to where it is told, m: in a periodic box it is counted on as
-  /// whichever image meets others, and told along its own way, without jumps.
+  /// Offset from where a body is computed to where it is recorded, m: in a periodic box it is
+  /// computed as the image that meets others, and recorded along its own path without jumps.
   [[nodiscard]] Vector3 way_told(BodyIndex i) const {
     return boxes_on.empty() ? Vector3(Vector3::Zero()) : model.scene().periodic->shift(boxes_on[i]);
   }

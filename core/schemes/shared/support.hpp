@@ -53,8 +53,8 @@ struct Support {
 /// motions start together; the surface does not turn.
 [[nodiscard]] Motion ride(const Motion& along, const Motion& surface_motion, const Vector3& normal);
 
-/// Takes from the forces on a ball what presses it against the surface. To be the last force of
-/// its island.
+/// Cancels the part of the forces on a ball that presses it against the surface. Must be the last
+/// force of its island.
 class SupportForce final : public Force {
  public:
   explicit SupportForce(const Vector3& normal) : normal_(normal) {}
