@@ -3,6 +3,7 @@
 #include "core/contacts/least_norm.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace kairos {
@@ -33,6 +34,14 @@ VectorXd on_rows(const MatrixXd& W, const VectorXd& q, const std::vector<Index>&
   return x;
 }
 
+/// Below which W x + q is none: `tolerance` of the largest q, and the roundoff of its terms, which
+/// between bodies of very different masses are far larger than what they add up to.
+VectorXd none(const MatrixXd& W, const VectorXd& q, const VectorXd& x, double tolerance) {
+  constexpr double roundings = 64.0 * std::numeric_limits<double>::epsilon();
+  const double rate = q.cwiseAbs().maxCoeff();
+  return (roundings * (W.cwiseAbs() * x.cwiseAbs())).array() + tolerance * rate;
+}
+
 }  // namespace
 
 bool complementary(const MatrixXd& W, const VectorXd& q, const VectorXd& x, double tolerance) {
@@ -41,11 +50,10 @@ bool complementary(const MatrixXd& W, const VectorXd& q, const VectorXd& x, doub
   }
   const VectorXd rest = W * x + q;
   const double force = std::max(x.cwiseAbs().maxCoeff(), 0.0);
-  const double rate = q.cwiseAbs().maxCoeff();
+  const VectorXd least = none(W, q, x, tolerance);
   for (Index i = 0; i < q.size(); ++i) {
     const bool presses = x[i] > tolerance * force;
-    if (x[i] < -tolerance * force || rest[i] < -tolerance * rate ||
-        (presses && rest[i] > tolerance * rate)) {
+    if (x[i] < -tolerance * force || rest[i] < -least[i] || (presses && rest[i] > least[i])) {
       return false;
     }
   }
@@ -66,14 +74,14 @@ Complementarity solve_complementarity(const MatrixXd& W, const VectorXd& q, doub
   }
   answer.x.setZero();
   std::vector<Index> pressed;
-  const double rate = q.cwiseAbs().maxCoeff();
   const auto most = static_cast<int>(3 * q.size() + 8);
   while (answer.solves < most) {
     const VectorXd rest = W * answer.x + q;
+    const VectorXd doubt = none(W, q, answer.x, tolerance);
     Index enters = -1;
     for (Index i = 0; i < q.size(); ++i) {
       const bool is_in = std::find(pressed.begin(), pressed.end(), i) != pressed.end();
-      if (!is_in && rest[i] < -tolerance * rate && (enters < 0 || rest[i] < rest[enters])) {
+      if (!is_in && rest[i] < -doubt[i] && (enters < 0 || rest[i] < rest[enters])) {
         enters = i;
       }
     }

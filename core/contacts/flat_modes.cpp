@@ -13,6 +13,8 @@ namespace {
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// Accelerations below this part of the largest load are roundoff of the solve.
 constexpr double solve_roundoff = 1e-10;
+/// Roundings of a solve and of what it is put in.
+constexpr double solve_epsilons = 64.0;
 /// Velocities below this part of what was projected are roundoff of the projection.
 constexpr double project_roundoff = 64.0 * epsilon;
 
@@ -111,11 +113,21 @@ class Attempt {
       }
       turning.setZero();
     }
-    // A patch whose points accelerate apart opens.
+    // A patch whose points accelerate apart opens. What a light body is pressed with from both
+    // sides accelerates it by the roundoff of that, which may be more than the loads'.
+    const Eigen::VectorXd squeezed = W.cwiseAbs() * forces.x;
     std::fill(mode_.kept.begin(), mode_.kept.end(), char{0});
     for (std::size_t r = 0; r < of_row_.size(); ++r) {
       const double a = all_.rate(all_.rows[r], mode_.accelerations);
-      mode_.kept[of_row_[r]] = std::abs(a) <= solve_roundoff * load_ ? 1 : 0;
+      const double none = solve_roundoff * load_ +
+                          solve_epsilons * epsilon * squeezed[static_cast<Eigen::Index>(r)];
+      mode_.kept[of_row_[r]] = std::abs(a) <= none ? 1 : 0;
+    }
+    const double most = *std::max_element(mode_.pressing.begin(), mode_.pressing.end());
+    for (std::size_t p = 0; p < mode_.kept.size(); ++p) {
+      if (mode_.kept[p] == 0 && mode_.pressing[p] > solve_roundoff * most) {
+        return refuse("no contact forces were found that could be verified");
+      }
     }
     return true;
   }

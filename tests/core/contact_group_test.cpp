@@ -104,6 +104,43 @@ TEST_CASE("a stack at rest: each patch carries what is above it, in one solve", 
   }
 }
 
+TEST_CASE("a light ball under heavy ones is pressed, and none of them leaves it", "[contacts]") {
+  Random random{87493};
+  for (int tower = 0; tower < 2000; ++tower) {
+    ContactGroup group;
+    group.bodies.push_back({0.0, Matrix3::Zero(), Vector3::Zero()});
+    group.velocities.emplace_back();
+    group.loads.emplace_back();
+    group.radius.push_back(0.0);
+    double height = 0.0;
+    for (std::size_t k = 1; k <= 3; ++k) {
+      const double r = random.log_uniform(0.1, 10.0);
+      const double mass = k == 1 ? random.log_uniform(1e-4, 1e-2) : random.log_uniform(1.0, 1e3);
+      ContactManifold m;
+      m.normal = Vector3::UnitY();
+      m.face_of_a = m.face_of_b = true;
+      m.add({0.0, height, 0.0}, 0.0);
+      height += r;
+      group.bodies.push_back(moved_by_impulse({0.0, height, 0.0}, mass, 0.4 * mass * r * r));
+      height += r;
+      group.velocities.emplace_back();
+      group.velocities.back().linear.y() = random.uniform(-1e-4, 1e-4);
+      group.loads.push_back({Vector3(0, -g, 0), Vector3::Zero()});
+      group.radius.push_back(r);
+      group.patches.push_back({k - 1, k, m, 3e-4});
+    }
+    const FlatMode mode = flat_mode(group, {});
+    CAPTURE(tower);
+    INFO(mode.refusal);
+    REQUIRE(mode.refusal.empty());
+    for (std::size_t k = 0; k < 3; ++k) {
+      CHECK(mode.kept[k] != 0);
+      // Of the slowest that was projected away, 1e-4 m/s, next to nothing is left.
+      CHECK(std::abs(mode.velocities[k + 1].linear.y()) <= 1e-16);
+    }
+  }
+}
+
 TEST_CASE("what hangs over too far begins to turn, and is not kept", "[contacts]") {
   for (const double over : {0.499, 0.501}) {
     ContactGroup group = stack(1);
