@@ -386,7 +386,9 @@ class Run:
         return {f.name: f.read_bytes() for f in self.folder.glob("*.csv")}
 
     def meetings(self):
-        return [(row["kind"], row["a"], row["b"]) for row in self.rows("events.csv")]
+        """Who met, in order. An edge that lands with both its corners is one impact, or two at one instant."""
+        told = [(row["t"], row["kind"], row["a"], row["b"]) for row in self.rows("events.csv")]
+        return [here[1:] for before, here in zip([None, *told], told) if here != before]
 
     def states(self):
         rows = list(frames(self.rows("trajectory.csv")))[-1]
