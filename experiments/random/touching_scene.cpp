@@ -190,7 +190,10 @@ class Builder {
       const double s = size();
       const double along = r * std::sqrt(2.0) + s + 0.1;
       ball(s * normal + along * down, s);
-      scene_.bodies[1].position = std::max(3.0, along + 1.1 * s) * down;  // room for both
+      // Room for both, also where the stop leans over the incline.
+      const Vector3& stop = scene_.bodies[1].normal;
+      const double least = along + 1.001 * s * (1.0 - normal.dot(stop)) / -down.dot(stop);
+      scene_.bodies[1].position = std::max({3.0, along + 1.1 * s, least}) * down;
     }
   }
 
