@@ -3,9 +3,22 @@
 #include "ccd/rounding/roundoff.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 
+// Where the compiler can, the loop over pairs exists twice, and the processor decides at load time.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__) && \
+    !defined(__SANITIZE_ADDRESS__)
+#define KAIROS_WIDE [[gnu::target_clones("avx2", "default")]]
+#else
+#define KAIROS_WIDE
+#endif
+#define KAIROS_INLINE [[gnu::always_inline]] inline
+
+// One loop over pairs, without branches, that the compiler turns into registers as wide as the
+// processor's. Nothing is contracted: the same bits, however wide they are.
 namespace kairos::ccd {
 namespace {
 
@@ -14,68 +27,84 @@ constexpr double largest = 0x1p22;
 constexpr double more = 1.0 + 0x1p-22;
 constexpr double sooner = 1.0 - 0x1p-20;
 
-/// b - a and how fast it changes, at the later start.
-struct Relative {
-  double d[3];
-  double v[3];
-  double way = 0.0;          ///< how fast the two go, m/s, and
-  double coordinates = 0.0;  ///< how large the numbers are that d was computed from, m
+/// Pairs of one loop, a multiple of what a register holds.
+constexpr std::size_t block = 32;
+constexpr std::size_t widest = 8;
 
-  Relative(const BallFlight& a, const BallFlight& b) {
-    const double lag = b.start - a.start;
-    const double s_a = std::max(lag, 0.0);
-    const double s_b = std::max(-lag, 0.0);
-    double size = 0.0;
-    for (int k = 0; k < 3; ++k) {
-      const double g = a.acceleration[k];
-      v[k] = (b.velocity[k] + g * s_b) - (a.velocity[k] + g * s_a);
-      d[k] = (b.position[k] + (b.velocity[k] + 0.5 * g * s_b) * s_b) -
-             (a.position[k] + (a.velocity[k] + 0.5 * g * s_a) * s_a);
-      way += std::abs(a.velocity[k]) + std::abs(b.velocity[k]) + std::abs(g) * (s_a + s_b);
-      size += std::abs(a.position[k]) + std::abs(b.position[k]);
+/// The other balls of some pairs, component by component.
+struct Others {
+  using Column = std::array<double, block>;
+  std::array<Column, 3> p, v;
+  Column lag, radius;
+  Column comparable;  ///< 1: its acceleration is that of the one; else 0
+
+  void set(std::size_t k, const BallFlight& one, const BallFlight& other) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      p[axis][k] = other.position[static_cast<Eigen::Index>(axis)];
+      v[axis][k] = other.velocity[static_cast<Eigen::Index>(axis)];
     }
-    coordinates = size + way * (s_a + s_b);
+    lag[k] = other.start - one.start;
+    radius[k] = other.radius;
+    comparable[k] = one.acceleration == other.acceleration ? 1.0 : 0.0;
   }
 };
 
-double dot(const double (&x)[3], const double (&y)[3]) {
+KAIROS_INLINE double dot(const double (&x)[3], const double (&y)[3]) {
   return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
 }
+KAIROS_INLINE double positive_part(double x) { return x < 0.0 ? 0.0 : x; }
 
-double clear_time(const BallFlight& a, const BallFlight& b, double tolerance) {
-  if (a.acceleration != b.acceleration) {
-    return 0.0;
+/// For how long from the later start ball k is clear of `a`.
+KAIROS_INLINE double clear_time(const BallFlight& a, const Others& b, std::size_t k,
+                                double tolerance) {
+  const double s_a = positive_part(b.lag[k]);
+  const double s_b = positive_part(-b.lag[k]);
+  double d[3];             // b - a at the later start
+  double v[3];             // how fast that changes
+  double way = 0.0;        // how fast the two go, m/s
+  double coordinates = 0;  // how large the numbers are that d is computed from, m
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double g = a.acceleration.data()[i];
+    const double p_a = a.position.data()[i];
+    const double v_a = a.velocity.data()[i];
+    const double p_b = b.p[i][k];
+    const double v_b = b.v[i][k];
+    v[i] = (v_b + g * s_b) - (v_a + g * s_a);
+    d[i] = (p_b + (v_b + 0.5 * g * s_b) * s_b) - (p_a + (v_a + 0.5 * g * s_a) * s_a);
+    way += __builtin_fabs(v_a) + __builtin_fabs(v_b) + __builtin_fabs(g) * (s_a + s_b);
+    coordinates += __builtin_fabs(p_a) + __builtin_fabs(p_b);
   }
-  const Relative at(a, b);
-  const double touch = a.radius + b.radius;
-  if (!(at.coordinates <= largest * touch)) {
-    return 0.0;
-  }
+  coordinates += way * (s_a + s_b);
+  const double touch = a.radius + b.radius[k];
   const double reach = touch * more + 4.0 * tolerance;
-  const double distance = dot(at.d, at.d);
-  const double approach = dot(at.d, at.v);
+  const double distance = dot(d, d);
+  const double approach = dot(d, v);
   const double outside = distance - reach * reach;
-  if (!(approach < 0.0)) {
-    // Apart and parting: nearer than now by no more than rounding.
-    const double least = tolerance == 0.0 ? touch * touch * (1.0 + 0x1p-50) : reach * reach;
-    return approach > 0.0 && distance >= least ? infinity : 0.0;
-  }
-  if (!(outside > 0.0)) {
-    return 0.0;
-  }
-  const double square = dot(at.v, at.v);
-  const double cross[3] = {at.d[1] * at.v[2] - at.d[2] * at.v[1],
-                           at.d[2] * at.v[0] - at.d[0] * at.v[2],
-                           at.d[0] * at.v[1] - at.d[1] * at.v[0]};
+  const double square = dot(v, v);
+  const double cross[3] = {d[1] * v[2] - d[2] * v[1], d[2] * v[0] - d[0] * v[2],
+                           d[0] * v[1] - d[1] * v[0]};
   const double inwards = reach * reach * square - dot(cross, cross);
   // What velocities may be off by moves the pair by less than the reaches were made larger, while
   // they take less than this time to be nearest.
-  const double resolved = 0x1p-24 * touch / (8.0 * unit_roundoff * at.way);
-  if (inwards < 0.0) {
-    return -approach <= resolved * square ? infinity : 0.0;
+  const double resolved = 0x1p-24 * touch / (8.0 * unit_roundoff * way);
+  const double time = outside / (-approach + __builtin_sqrt(inwards));
+  // Apart and parting: nearer than now by no more than rounding.
+  const double least = tolerance == 0.0 ? touch * touch * (1.0 + 0x1p-50) : reach * reach;
+  const bool parts = (approach > 0.0) & (distance >= least);
+  const bool passes =
+      (approach < 0.0) & (outside > 0.0) & (inwards < 0.0) & (-approach <= resolved * square);
+  const bool meets = (approach < 0.0) & (outside > 0.0) & (inwards >= 0.0) & (time <= resolved);
+  const bool known = (coordinates <= largest * touch) & (b.comparable[k] != 0.0);
+  double clear = meets ? sooner * time : 0.0;
+  clear = parts | passes ? infinity : clear;
+  return known ? clear : 0.0;
+}
+
+KAIROS_WIDE void clear_times_of(const BallFlight& one, const Others& others, std::size_t count,
+                                double tolerance, double* clear) {
+  for (std::size_t k = 0; k < count; ++k) {
+    clear[k] = clear_time(one, others, k, tolerance);
   }
-  const double time = outside / (-approach + std::sqrt(inwards));
-  return time <= resolved ? sooner * time : 0.0;
 }
 
 }  // namespace
@@ -83,8 +112,16 @@ double clear_time(const BallFlight& a, const BallFlight& b, double tolerance) {
 void filter_balls(const BallFlight& one, std::span<const BallFlight> others, double tolerance,
                   std::span<double> clear) {
   assert(others.size() == clear.size());
-  for (std::size_t k = 0; k < others.size(); ++k) {
-    clear[k] = clear_time(one, others[k], tolerance);
+  Others batch;
+  std::array<double, block> found;
+  for (std::size_t first = 0; first < others.size(); first += block) {
+    const std::size_t count = std::min(block, others.size() - first);
+    const std::size_t whole = (count + widest - 1) / widest * widest;
+    for (std::size_t k = 0; k < whole; ++k) {  // registers are filled with what is there already
+      batch.set(k, one, others[first + std::min(k, count - 1)]);
+    }
+    clear_times_of(one, batch, whole, tolerance, found.data());
+    std::copy_n(found.begin(), count, clear.begin() + static_cast<std::ptrdiff_t>(first));
   }
 }
 

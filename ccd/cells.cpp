@@ -116,6 +116,7 @@ class Cells final : public Neighbourhood {
     archive(places_);
     if (archive.reading()) {
       for (BodyIndex i = 0; i < places_.size(); ++i) {
+        archive.require(places_[i].at != Place::in_box || large_.is_known(i));
         if (places_[i].at == Place::in_cell) {
           grid_.insert(places_[i].cell, i);
         }

@@ -19,6 +19,7 @@ double surface(const Aabb& box) {
 
 using NodeIndex = std::int32_t;
 constexpr NodeIndex none = -1;
+constexpr NodeIndex unbounded = -2;
 
 struct Node {
   Aabb box;
@@ -32,56 +33,61 @@ struct Node {
 
 class DynamicTree final : public BroadPhase {
  public:
-  explicit DynamicTree(std::size_t bodies)
-      : boxes_(bodies), leaf_(bodies, none), known_(bodies, false) {
-    nodes_.reserve(2 * bodies);
-  }
+  explicit DynamicTree(std::size_t bodies) : leaf_(bodies, none) {}
 
   [[nodiscard]] std::string_view name() const override { return "dynamic-tree"; }
 
   void update(BodyIndex body, const Aabb& swept) override {
     remove(body);
-    boxes_[body] = swept;
-    known_[body] = true;
     if (swept.lower.allFinite() && swept.upper.allFinite()) {
       leaf_[body] = insert(body, swept);
     } else {
-      unbounded_.push_back(body);
+      leaf_[body] = unbounded;
+      unbounded_.push_back({body, swept});
     }
   }
 
   void candidates(BodyIndex body, std::vector<BodyIndex>& out) const override {
-    if (!known_[body]) {
+    if (leaf_[body] == none) {
       return;
     }
     const auto begin = static_cast<std::ptrdiff_t>(out.size());
-    collect(boxes_[body], body, out);
+    collect(leaf_[body] == unbounded ? place_of(body)->box : at(leaf_[body]).box, body, out);
     std::sort(out.begin() + begin, out.end());
   }
 
   void overlapping(const Aabb& box, std::vector<BodyIndex>& out) const override {
-    collect(box, boxes_.size(), out);
+    collect(box, leaf_.size(), out);
   }
 
   void remove(BodyIndex body) override {
-    if (leaf_[body] != none) {
+    if (leaf_[body] == unbounded) {
+      unbounded_.erase(place_of(body));
+    } else if (leaf_[body] != none) {
       take_out(leaf_[body]);
-      leaf_[body] = none;
-    } else if (known_[body]) {
-      std::erase(unbounded_, body);
     }
-    known_[body] = false;
+    leaf_[body] = none;
   }
 
  private:
+  /// A box that reaches to infinity is in no leaf.
+  struct Unbounded {
+    BodyIndex body = 0;
+    Aabb box;
+  };
+  [[nodiscard]] std::vector<Unbounded>::const_iterator place_of(BodyIndex body) const {
+    return std::find_if(unbounded_.begin(), unbounded_.end(),
+                        [body](const Unbounded& u) { return u.body == body; });
+  }
+
   Node& at(NodeIndex i) { return nodes_[static_cast<std::size_t>(i)]; }
   const Node& at(NodeIndex i) const { return nodes_[static_cast<std::size_t>(i)]; }
 
   void collect(const Aabb& box, BodyIndex body, std::vector<BodyIndex>& out) const {
     collect(root_, box, body, out);
-    for (const BodyIndex other : unbounded_) {
-      if (other != body && boxes_[other].overlaps(box)) {
-        out.push_back(other);
+    for (const Unbounded& other : unbounded_) {
+      if (other.body != body && other.box.overlaps(box)) {
+        out.push_back(other.body);
       }
     }
   }
@@ -225,10 +231,8 @@ class DynamicTree final : public BroadPhase {
     return up;
   }
 
-  std::vector<Aabb> boxes_;
-  std::vector<NodeIndex> leaf_;
-  std::vector<BodyIndex> unbounded_;
-  std::vector<bool> known_;
+  std::vector<NodeIndex> leaf_;  ///< by body
+  std::vector<Unbounded> unbounded_;
   std::vector<Node> nodes_;
   NodeIndex root_ = none;
   NodeIndex free_ = none;

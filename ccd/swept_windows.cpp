@@ -24,6 +24,13 @@ SweptWindows::SweptWindows(const Model& model, std::unique_ptr<BroadPhase> boxes
   }
 }
 
+SweptWindows::Watched& SweptWindows::watch(BodyIndex i) {
+  if (watched_[i] == nullptr) {
+    watched_[i] = std::make_unique<Watched>();
+  }
+  return *watched_[i];
+}
+
 Instant SweptWindows::enter(BodyIndex i, const MovingShape& moving, Instant t, Instant until) {
   Instant end = until;
   Instant crosses = Instant::never();
@@ -41,15 +48,16 @@ Instant SweptWindows::enter(BodyIndex i, const MovingShape& moving, Instant t, I
     swept.lower.array() -= near;
     swept.upper.array() += near;
   }
-  watched_[i].swept = swept;
-  watched_[i].known = true;
+  Watched& watched = watch(i);
+  watched.swept = swept;
+  watched.known = true;
   boxes_.update(i, swept);
   return crosses;
 }
 
 /// How long it takes i to go as far as its reach, s.
 double SweptWindows::window_length(BodyIndex i, const MovingShape& moving, Instant t) {
-  double& reach = watched_[i].reach;
+  double& reach = watch(i).reach;
   if (reach == 0.0) {
     reach = 4.0 * bounding_radius(moving.shape);
   }
@@ -62,16 +70,17 @@ double SweptWindows::window_length(BodyIndex i, const MovingShape& moving, Insta
 }
 
 void SweptWindows::near(BodyIndex i, std::vector<Neighbour>& out) {
+  Watched& watched = watch(i);
   const std::size_t before = out.size();
-  boxes_.near(i, watched_[i].swept, out);
+  boxes_.near(i, watched.swept, out);
   // About ten neighbours cost least.
   constexpr std::size_t few = 8;
   constexpr std::size_t many = 16;
   const std::size_t found = out.size() - before;
   if (found > many) {
-    watched_[i].reach *= 0.5;
+    watched.reach *= 0.5;
   } else if (found < few) {
-    watched_[i].reach *= 1.5;
+    watched.reach *= 1.5;
   }
 }
 
@@ -83,16 +92,16 @@ Instant SweptWindows::cross(BodyIndex i, const MovingShape& moving, Instant t, I
 }
 
 void SweptWindows::go_on_as(BodyIndex i, const Image& n) {
-  Watched& watched = watched_[i];
-  if (watched.known) {
+  if (is_known(i)) {
     const Vector3 shift = model_.scene().periodic->shift(n);
-    watched.swept = {watched.swept.lower + shift, watched.swept.upper + shift};
-    boxes_.update(i, watched.swept);
+    Aabb& swept = watched_[i]->swept;
+    swept = {swept.lower + shift, swept.upper + shift};
+    boxes_.update(i, swept);
   }
 }
 
 void SweptWindows::leave(BodyIndex i) {
-  watched_[i].known = false;
+  watch(i).known = false;
   boxes_.remove(i);
 }
 
@@ -101,12 +110,14 @@ void SweptWindows::Watched::persist(Archive& archive) {
 }
 
 void SweptWindows::persist(Archive& archive) {
-  archive(watched_);
-  if (archive.reading()) {
-    for (BodyIndex i = 0; i < watched_.size(); ++i) {
-      if (watched_[i].known) {
-        boxes_.update(i, watched_[i].swept);
-      }
+  for (BodyIndex i = 0; i < watched_.size(); ++i) {
+    bool here = watched_[i] != nullptr;
+    archive(here);
+    if (here) {
+      archive(watch(i));
+    }
+    if (archive.reading() && is_known(i)) {
+      boxes_.update(i, watched_[i]->swept);
     }
   }
 }

@@ -28,8 +28,10 @@ class SweptWindows final : public Neighbourhood {
   /// Body i is somewhere else.
   void leave(BodyIndex i);
 
-  /// What i sweeps during its window, rounding and tolerance included.
-  [[nodiscard]] const Aabb& swept(BodyIndex i) const { return watched_[i].swept; }
+  /// Whether body i is here.
+  [[nodiscard]] bool is_known(BodyIndex i) const { return watched_[i] && watched_[i]->known; }
+  /// What i, which is here, sweeps during its window, rounding and tolerance included.
+  [[nodiscard]] const Aabb& swept(BodyIndex i) const { return watched_[i]->swept; }
   [[nodiscard]] ImageBoxes& boxes() { return boxes_; }
 
  private:
@@ -41,13 +43,14 @@ class SweptWindows final : public Neighbourhood {
     void persist(Archive& archive);
   };
 
+  [[nodiscard]] Watched& watch(BodyIndex i);
   [[nodiscard]] double window_length(BodyIndex i, const MovingShape& moving, Instant t);
 
   const Model& model_;
   ImageBoxes boxes_;
   double tolerance_;
   double longest_reach_;  ///< m: half a period, so that a box is near few images
-  std::vector<Watched> watched_;
+  std::vector<std::unique_ptr<Watched>> watched_;  ///< by body; null: it has not been here
 };
 
 }  // namespace kairos::ccd

@@ -85,6 +85,10 @@ void Model::decide(std::vector<Decision> decisions) {
 /// Who moves whom, as what, under which gravity.
 void Model::choose_bodies() {
   Tally tally;
+  mobility_.reserve(size());
+  roles_.reserve(size());
+  shapes_.reserve(size());
+  gravity_force_.reserve(size());
   for (BodyIndex i = 0; i < size(); ++i) {
     const Body& b = body(i);
     mobility_.push_back(b.drive != nullptr ? Mobility::driven : b.entity->mobility());
@@ -121,6 +125,7 @@ void Model::choose_bodies() {
       free_by_name_.push_back(i);
     }
   }
+  free_by_name_.shrink_to_fit();
   std::sort(free_by_name_.begin(), free_by_name_.end(),
             [&](BodyIndex a, BodyIndex b) { return body(a).name < body(b).name; });
   decide(tally.decisions("bodies"));
@@ -192,6 +197,8 @@ void Model::choose_friction() {
 /// Whose orientation is integrated at all.
 void Model::choose_rotation() {
   Tally tally;
+  rotates_.reserve(size());
+  inertia_.reserve(size());
   for (BodyIndex i = 0; i < size(); ++i) {
     const Body& b = body(i);
     const bool could = is_free(i) && (b.entity->rotates() || is_sphere(shape(i)));
@@ -285,6 +292,7 @@ void Model::choose_islands() {
     }
     island.forces.push_back(island_forces_.back().get());
   }
+  islands_.shrink_to_fit();
   build_joints(place);
   for (const Island& island : islands_) {
     if (island.bodies.size() > 1) {

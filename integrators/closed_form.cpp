@@ -1,6 +1,7 @@
 #include "integrators/closed_form.hpp"
 
 #include "core/archive.hpp"
+#include "core/memoryless_stepper.hpp"
 #include "integrators/accelerations.hpp"
 #include "integrators/constant_force.hpp"
 #include "integrators/dense_output.hpp"
@@ -41,7 +42,7 @@ bool is_steady(const BodyInertia& inertia, const BodyState& state) {
   return change <= 16.0 * std::numeric_limits<double>::epsilon() * w * w;
 }
 
-class ClosedForm final : public Stepper {
+class ClosedForm final : public MemorylessStepper {
  public:
   [[nodiscard]] StepperInfo info() const override { return closed_form_info; }
   [[nodiscard]] std::int64_t evaluations() const override { return evaluations_; }

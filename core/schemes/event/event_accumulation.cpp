@@ -150,7 +150,8 @@ EventAccumulation::Finding EventAccumulation::after_impact(BodyIndex a, BodyInde
     }
     if (history.creeps()) {
       std::vector<BodyIndex> bodies{a, b};
-      bodies.insert(bodies.end(), history.partners().begin(), history.partners().end());
+      const std::vector<BodyIndex> partners = history.partners();
+      bodies.insert(bodies.end(), partners.begin(), partners.end());
       return {.kind = Finding::Kind::creeps,
               .reason = fmt::format("accumulation: impacts of {} follow each other without end, on "
                                     "ways below {:.2g} m",
@@ -268,7 +269,7 @@ EventAccumulation::Finding EventAccumulation::collapse(BodyIndex a, BodyIndex b,
 /// Between two bodies that nothing stops from meeting: impacts follow each other ever faster until
 /// no room is left.
 std::string EventAccumulation::squeeze(BodyIndex i, Instant t) const {
-  const std::vector<BodyIndex>& partners = histories_[i].partners();
+  const std::vector<BodyIndex> partners = histories_[i].partners();
   if (partners.size() != 2 || run_.model.is_free(partners[0]) || run_.model.is_free(partners[1])) {
     return {};
   }

@@ -10,41 +10,49 @@ namespace kairos {
 inline namespace core {
 
 void EventMotions::book_all(Instant t) {
-  for (Flow& flow : flows_) {
-    book(flow, t);
+  for (const Island& island : run_.model.islands()) {
+    book(island.bodies.front(), t);
   }
 }
 
 void EventMotions::book(Flow& flow, Instant t) {
-  const double duration = t - flow.booked;
+  const Instant from = booked_until(flow);
+  const double duration = t - from;
   if (!(duration > 0.0)) {
     return;
   }
   const BodyIndex first = flow.island.bodies.front();
   if (flow.carried) {
     bring(first, t);
-    run_.account.carried(flow.island, t, booked_, now_);
-    booked_[first] = now_[first];
-    flow.booked = t;
+    run_.account.carried(flow.island, t, flow.booked, {&now_[first], 1});
+    flow.booked[0] = now_[first];
+    booked_until(flow) = t;
     return;
   }
   book_rubs(first, t);
   // At its end a segment is where the stepper left it, which its motion tells up to roundoff.
-  const bool whole = !(end_of(first) - t > 0.0) && !bodies_[first].support;
+  const bool whole = !(end_of(first) - t > 0.0) && !support(first);
+  to_.clear();
+  given_.clear();
   for (std::size_t k = 0; k < flow.states.size(); ++k) {
     const BodyIndex i = flow.island.bodies[k];
     now_[i] = whole ? flow.states[k] : at(i, t);
     mark_brought(i, t);
+    to_.push_back(now_[i]);
+    given_.push_back(ties(i).field_force);
   }
-  const double roundoff =
-      run_.options.roundoff && !bodies_[first].turns ? new_roundoff(flow, t) : 0.0;
+  if (is_shared(flow)) {
+    from_.assign(1, at(first, from));
+  }
+  const bool turns = ties(first).turns;
+  const double roundoff = run_.options.roundoff && !turns ? new_roundoff(flow, t) : 0.0;
   // What the motion of a top is off its closed form is truncation: polynomials are fitted to it.
-  const bool turns = bodies_[first].turns;
   const bool exact =
       !turns && (flow.held || (flow.exact && !run_.model.tumbles(run_.model.island_of(first))));
-  Leg leg{flow.island, booked_, now_, field_forces_, exact, roundoff, riding_work(flow, t)};
+  Leg leg{flow.island,         is_shared(flow) ? from_ : flow.booked, to_, given_, exact, roundoff,
+          riding_work(flow, t)};
   if (turns) {
-    leg.contact_work = book_turn(first, flow.booked, t);
+    leg.contact_work = book_turn(first, from, t);
   }
   if (flow.island.forces.empty()) {
     run_.account.leg(leg);
@@ -55,20 +63,20 @@ void EventMotions::book(Flow& flow, Instant t) {
     }
     if (flow.island.joints != nullptr) {
       leg.contact_work = whole ? run_.account.projected(flow.projection) : 0.0;
-      leg.riding_work = run_.account.joint_work(flow.island, motions, flow.booked, duration) +
+      leg.riding_work = run_.account.joint_work(flow.island, motions, from, duration) +
                         (whole ? flow.projection.driven : 0.0);
     }
-    run_.account.leg(leg, motions, flow.booked, duration);
+    run_.account.leg(leg, motions, from, duration);
   }
-  for (const BodyIndex i : flow.island.bodies) {
-    booked_[i] = now_[i];
+  if (!is_shared(flow)) {
+    flow.booked = to_;
   }
-  flow.booked = t;
+  booked_until(flow) = t;
 }
 
 /// What contact forces did to a body that turns, J; books what of their work is truncation.
 double EventMotions::book_turn(BodyIndex i, Instant from, Instant to) {
-  const Polynomial<3>& worked = bodies_[i].worked.front();
+  const Polynomial<3>& worked = ties(i).worked.front();
   const Instant start = start_of(i);
   const Vector3 done = worked(to - start) - worked(from - start);
   run_.ledger.add(EnergyLine::truncation, done.y());
@@ -78,7 +86,10 @@ double EventMotions::book_turn(BodyIndex i, Instant from, Instant to) {
 /// Friction takes what slides, belts and driven surfaces give what they carry. Forces are constant,
 /// and so are angular accelerations.
 void EventMotions::book_rubs(BodyIndex i, Instant t) {
-  for (Rub& rub : bodies_[i].rubs) {
+  if (ties_[i] == nullptr) {
+    return;
+  }
+  for (Rub& rub : ties_[i]->rubs) {
     const double h = t - rub.booked;
     const BodyState to_a = at(rub.a, t);
     const BodyState to_b = at(rub.b, t);
@@ -102,9 +113,10 @@ void EventMotions::book_rubs(BodyIndex i, Instant t) {
       // m (v1^2 - v0^2) / 2 - F.x, F what acts beside the plane.
       const BodyState& from = run_.model.is_free(rub.b) ? rub.from_b : rub.from_a;
       const BodyState& to = run_.model.is_free(rub.b) ? to_b : to_a;
-      run_.ledger.add(EnergyLine::driven_work, run_.account.gained(i, from, to) -
-                                                   (run_.model.gravity_force(i) + field_forces_[i])
-                                                       .dot(to.pose.position - from.pose.position));
+      run_.ledger.add(
+          EnergyLine::driven_work,
+          run_.account.gained(i, from, to) - (run_.model.gravity_force(i) + ties(i).field_force)
+                                                 .dot(to.pose.position - from.pose.position));
     } else if (run_.model.mobility(rub.a) == Mobility::driven) {
       run_.ledger.add(EnergyLine::driven_work, rub.force.dot(way_a));
     }
@@ -121,17 +133,17 @@ void EventMotions::book_rubs(BodyIndex i, Instant t) {
 /// over the surface's displacement along n; F what is constant and what depends on the state.
 double EventMotions::riding_work(const Flow& flow, Instant t) {
   const BodyIndex i = flow.island.bodies.front();
-  const std::optional<Support>& support = bodies_[i].support;
+  const std::optional<Support>& support = ties(i).support;
   if (!support || run_.model.mobility(support->surface) != Mobility::driven) {
     return 0.0;
   }
   const Vector3& n = support->normal;
-  const double v0 = n.dot(booked_[i].twist.linear);
+  const double v0 = n.dot(flow.booked[0].twist.linear);
   const double v1 = n.dot(now_[i].twist.linear);
-  const double rise = n.dot(now_[i].pose.position - booked_[i].pose.position);
+  const double rise = n.dot(now_[i].pose.position - flow.booked[0].pose.position);
   return 0.5 * flow.island.inertia[0].mass * (v1 - v0) * (v1 + v0) - n.dot(net_force(i)) * rise +
          run_.account.bearing_work(run_.model.islands()[run_.model.island_of(i)].forces, of(i), n,
-                                   flow.booked, t - flow.booked);
+                                   booked_until(flow), t - booked_until(flow));
 }
 
 /// Roundoff of the current segment since the ledger last looked, J.

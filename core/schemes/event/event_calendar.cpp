@@ -25,7 +25,8 @@ bool EventCalendar::later(const Entry& x, const Entry& y) {
 }
 
 void EventCalendar::put(Entry entry) {
-  entry.stamp = ++stamp_[entry.body];
+  entry.stamp = latest_[entry.body].stamp + 1;
+  latest_[entry.body] = entry;
   if (entry.time < Instant::never()) {
     file(entry);
   }
@@ -35,12 +36,13 @@ void EventCalendar::file(const Entry& entry) {
   const double day = (entry.time.seconds - origin_) * per_day_;
   const auto ahead = day - static_cast<double>(day_);
   if (per_day_ == 0.0 || !(ahead < static_cast<double>(days_.size()))) {
-    far_.push_back(entry);
+    far_.push_back({entry.body, entry.stamp});
   } else if (const auto number = static_cast<std::int64_t>(day); number <= day_) {
     today_.push_back(entry);
     std::push_heap(today_.begin(), today_.end(), later);
   } else {
-    days_[static_cast<std::size_t>(number) & (days_.size() - 1)].push_back(entry);
+    days_[static_cast<std::size_t>(number) & (days_.size() - 1)].push_back(
+        {entry.body, entry.stamp});
     ++filed_;
   }
 }
@@ -49,7 +51,7 @@ const EventCalendar::Entry* EventCalendar::first() {
   if (today_.empty() && filed_ == 0 && far_.empty()) {
     return nullptr;
   }
-  if (per_day_ == 0.0 || filed_ + far_.size() > most_entries * stamp_.size() + 1024) {
+  if (per_day_ == 0.0 || filed_ + far_.size() > most_entries * latest_.size() + 1024) {
     renew();
   }
   while (true) {
@@ -75,9 +77,9 @@ void EventCalendar::begin_next_day() {
   ++day_;
   Day& day = days_[static_cast<std::size_t>(day_) & (days_.size() - 1)];
   filed_ -= day.size();
-  for (const Entry& entry : day) {
-    if (current(entry)) {
-      today_.push_back(entry);
+  for (const Slip& slip : day) {
+    if (current(slip)) {
+      today_.push_back(latest_[slip.body]);
     }
   }
   day.clear();
@@ -98,11 +100,11 @@ void EventCalendar::begin_next_day() {
 void EventCalendar::file_far() {
   taken_ = 0;
   check_ = day_ + static_cast<std::int64_t>(days_.size() / 2);
-  std::vector<Entry> again;
+  Day again;
   again.swap(far_);
-  for (const Entry& entry : again) {
-    if (current(entry)) {
-      file(entry);
+  for (const Slip& slip : again) {
+    if (current(slip)) {
+      file(latest_[slip.body]);
     }
   }
 }
@@ -110,9 +112,12 @@ void EventCalendar::file_far() {
 /// New days, of a length by which the next quarter of all entries fills them.
 void EventCalendar::renew() {
   std::vector<Entry> all;
-  const auto take = [&](const std::vector<Entry>& from) {
-    std::copy_if(from.begin(), from.end(), std::back_inserter(all),
-                 [this](const Entry& entry) { return current(entry); });
+  const auto take = [&](const auto& from) {
+    for (const auto& entry : from) {
+      if (current(entry)) {
+        all.push_back(latest_[entry.body]);
+      }
+    }
   };
   take(today_);
   take(far_);
@@ -120,7 +125,7 @@ void EventCalendar::renew() {
     take(day);
   }
   if (days_.empty()) {
-    days_.resize(std::bit_ceil(std::clamp<std::size_t>(stamp_.size() / 2, 64, 1U << 20U)));
+    days_.resize(std::bit_ceil(std::clamp<std::size_t>(latest_.size() / 2, 64, 1U << 20U)));
   }
   for (Day& day : days_) {
     day.clear();

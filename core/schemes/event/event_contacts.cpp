@@ -433,11 +433,13 @@ void EventContacts::cross_field(BodyIndex a, BodyIndex b, Instant t, bool enteri
     group = modes_.group(seed);
     modes_.bring_group(group, t);
   }
+  std::vector<BodyIndex> fields = motions_.fields(body);
   if (entering) {
-    motions_.fields(body).push_back(field);
+    fields.push_back(field);
   } else {
-    std::erase(motions_.fields(body), field);
+    std::erase(fields, field);
   }
+  motions_.set_fields(body, std::move(fields));
   motions_.note(entering ? EventKind::field_entered : EventKind::field_left, field, body, t);
   if (!group.empty()) {
     return settle(group, t) ? void() : set_free(group, t);

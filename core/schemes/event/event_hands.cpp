@@ -29,7 +29,9 @@ void EventHands::grasp(std::size_t grip, Instant t) {
     motions_.book(held, t);
     contacts_.end_contact(held, t);
   }
-  for (const BodyIndex field : std::exchange(motions_.fields(held), {})) {
+  const std::vector<BodyIndex> fields = motions_.fields(held);
+  motions_.set_fields(held, {});
+  for (const BodyIndex field : fields) {
     motions_.note(EventKind::field_left, field, held, t);
   }
   motions_.note(EventKind::grasped, hand, held, t);

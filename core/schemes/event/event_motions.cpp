@@ -2,6 +2,7 @@
 
 #include "core/archive.hpp"
 #include "core/joint_system.hpp"
+#include "core/memoryless_stepper.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -15,36 +16,123 @@ inline namespace core {
 
 namespace {
 
-/// So few bodies keep their motions as they are, which is faster, in 25 MB.
-constexpr std::size_t few = 16'384;
+bool is_memoryless(const Stepper& stepper) {
+  return dynamic_cast<const MemorylessStepper*>(&stepper) != nullptr;
+}
 
 }  // namespace
 
 EventMotions::EventMotions(EventRun& run, const Method& method)
     : run_(run),
-      bodies_(run.model.size()),
+      method_(method),
+      table_(run.model),
+      ties_(run.model.size()),
       riders_(run.model.size(), 0),
-      flights_(run.model.size()),
       flies_(run.model.size(), 0),
-      now_(run.model.initial_state()),
+      flows_(run.model.islands().size()),
+      shares_(run.model.islands().size(), 0),
+      booked_until_(run.model.islands().size()),
+      now_(run.model.initial_state())
 #ifndef NDEBUG
-      brought_(run.model.size(), run.time),
+      ,
+      brought_(run.model.size(), run.time)
 #endif
-      booked_(now_),
-      field_forces_(run.model.size(), Vector3::Zero()) {
-  whole_.resize(run.model.size() <= few ? run.model.size() : 0);
-  for (BallFlight& flight : flights_) {
-    flight.radius = std::numeric_limits<double>::infinity();
-  }
-  for (std::size_t k = 0; k < run.model.islands().size(); ++k) {
-    Flow flow(run.model, method, k);
-    flow.exact = flow.stepper->info().order == 0;
-    if (flow.states.size() > motions_.size()) {
-      motions_.resize(flow.states.size());
+{
+  for (std::size_t k = 0; k < flows_.size(); ++k) {
+    shares_[k] = static_cast<char>(may_share(k));
+    if (shares_[k] == 0) {
+      flows_[k] = make_flow(k);
+      motions_.resize(std::max(motions_.size(), flows_[k]->states.size()));
     }
-    flows_.push_back(std::move(flow));
   }
   run_.account.open(run_.time, now_);
+}
+
+// --- Flows -------------------------------------------------------------------------------------
+
+std::unique_ptr<EventMotions::Flow> EventMotions::make_flow(std::size_t island) const {
+  auto flow = std::make_unique<Flow>(run_.model, method_, island);
+  flow->exact = flow->stepper->info().order == 0;
+  flow->gather(now_);
+  flow->booked = flow->states;
+  return flow;
+}
+
+/// Whether an island is one body that falls freely and does not turn, and its stepper can be that
+/// of others too: what such a body needs beside its motion is made again when it is looked at.
+bool EventMotions::may_share(std::size_t island) {
+  const Island& of = run_.model.islands()[island];
+  if (of.bodies.size() != 1 || !of.forces.empty() || of.joints != nullptr ||
+      !run_.model.closed_form(island) || run_.model.rotates(of.bodies.front()) ||
+      run_.options.roundoff) {
+    return false;
+  }
+  if (shared_ == nullptr) {
+    auto flow = make_flow(island);
+    if (!is_memoryless(*flow->stepper)) {
+      return false;
+    }
+    flow->stepper->start(flow->island, run_.time, flow->states);
+    shared_ = std::move(flow);
+    motions_.resize(std::max<std::size_t>(motions_.size(), 1));
+    return true;
+  }
+  const std::unique_ptr<Stepper> stepper = method_.stepper(run_.model, island);
+  return is_memoryless(*stepper) && stepper->info().name == shared_->stepper->info().name;
+}
+
+EventMotions::Flow& EventMotions::flow_of(BodyIndex i) {
+  const std::size_t k = run_.model.island_of(i);
+  if (flows_[k] != nullptr) {
+    return *flows_[k];
+  }
+  if (shared_->number != k) {
+    shared_->number = k;
+    shared_->island.bodies[0] = i;
+    shared_->island.inertia[0] = run_.model.inertia(i);
+  }
+  return *shared_;
+}
+
+EventMotions::Flow& EventMotions::own_flow(BodyIndex i) {
+  const std::size_t k = run_.model.island_of(i);
+  if (flows_[k] == nullptr) {
+    flows_[k] = make_flow(k);
+    Flow& flow = *flows_[k];
+    flow.states[0] = flow.booked[0] = at(i, booked_until_[k]);
+    flow.stepper->start(flow.island, booked_until_[k], flow.states);
+  }
+  return *flows_[k];
+}
+
+EventMotions::Flow& EventMotions::flow_to_launch(BodyIndex i) {
+  const std::size_t k = run_.model.island_of(i);
+  if (shares_[k] == 0) {
+    return *flows_[k];
+  }
+  if (ties(i).any() || (flows_[k] != nullptr && flows_[k]->carried)) {
+    return own_flow(i);
+  }
+  if (flows_[k] != nullptr) {
+    evaluations_ += flows_[k]->stepper->evaluations();
+    flows_[k].reset();
+  }
+  return flow_of(i);
+}
+
+EventMotions::Ties& EventMotions::tie(BodyIndex i) {
+  if (ties_[i] == nullptr) {
+    ties_[i] = std::make_unique<Ties>();
+  }
+  return *ties_[i];
+}
+
+void EventMotions::forget_rubs(BodyIndex i) {
+  if (ties_[i] != nullptr) {
+    ties_[i]->rubs.clear();
+    ties_[i]->turns = false;
+    ties_[i]->worked.clear();
+  }
 }
 
 void EventMotions::begin() {
@@ -52,7 +140,6 @@ void EventMotions::begin() {
     switch (run_.model.mobility(i)) {
       case Mobility::fixed:
         keep_motion(i, Motion::at_rest(run_.time, now_[i].pose));
-        set_flight(i, of(i));
         break;
       case Mobility::driven:
         drive(i, run_.time);
@@ -66,20 +153,14 @@ void EventMotions::begin() {
       Flow& flow = flow_of(i);
       set_forces(flow);
       flow.gather(now_);
-      flow.stepper->start(flow.island, run_.time, flow.states);
+      if (is_shared(flow)) {
+        flow.stepper->restart(flow.island, run_.time, flow.states);
+      } else {
+        flow.stepper->start(flow.island, run_.time, flow.states);
+      }
       next_segment(flow, run_.time);
     }
   }
-}
-
-BodyState EventMotions::at(BodyIndex i, Instant t) const {
-  if (!whole_.empty()) {
-    const Motion& motion = whole_[i];
-    const double s = std::min(t - motion.start, motion.duration);
-    return {motion.pose(s), motion.twist(s)};
-  }
-  const StoredMotion& motion = bodies_[i].motion;
-  return motion.at(std::min(t - motion.start(), motion.duration()));
 }
 
 void EventMotions::bring_others(BodyIndex i, Instant t) {
@@ -113,7 +194,7 @@ void EventMotions::open_pair(BodyIndex a, BodyIndex b, Instant t) {
 /// What is forgotten before a launch would be a wrong ledger or a wrong motion, and no error.
 void EventMotions::check_ready([[maybe_unused]] const Flow& flow,
                                [[maybe_unused]] Instant t) const {
-  assert(!(flow.booked < t));
+  assert(!(booked_until(flow) < t));
 #ifndef NDEBUG
   for (const BodyIndex k : flow.island.bodies) {
     assert(brought_[k] == t);
@@ -122,14 +203,12 @@ void EventMotions::check_ready([[maybe_unused]] const Flow& flow,
 }
 
 void EventMotions::launch(BodyIndex i, Instant t) {
-  Flow& flow = flow_of(i);
+  for (const BodyIndex k : island(i)) {
+    forget_rubs(k);
+  }
+  Flow& flow = flow_to_launch(i);
   check_ready(flow, t);
   flow.held = false;
-  for (const BodyIndex k : flow.island.bodies) {
-    bodies_[k].rubs.clear();
-    bodies_[k].turns = false;
-    bodies_[k].worked.clear();
-  }
   set_forces(flow);
   if (flow.island.joints != nullptr) {
     put_onto_joints(i, t);
@@ -158,10 +237,10 @@ void EventMotions::rest(BodyIndex i, Instant t) {
   flow.held = true;
   for (std::size_t k = 0; k < flow.states.size(); ++k) {
     const BodyIndex body = flow.island.bodies[k];
-    flow.states[k] = booked_[body] = now_[body];
+    flow.states[k] = flow.booked[k] = now_[body];
     set_motion(body, Motion::at_rest(t, now_[body].pose));
   }
-  flow.booked = t;
+  booked_until(flow) = t;
   flow.projection = {};
 }
 
@@ -172,26 +251,23 @@ void EventMotions::hold(BodyIndex i, Instant t, const Motion& motion) {
 
 void EventMotions::turn(BodyIndex i, Instant t, const Turn& turn) {
   hold(i, t, Twist{});
-  MovingBody& body = bodies_[i];
-  body.turns = true;
-  body.worked.assign(1, turn.worked);
-  Flow& flow = flow_of(i);
-  flow.states[0] = turn.end;
+  Ties& tied = tie(i);
+  tied.turns = true;
+  tied.worked.assign(1, turn.worked);
+  flow_of(i).states[0] = turn.end;
   set_motion(i, turn.motion);
 }
 
 void EventMotions::hold(BodyIndex i, Instant t, const Twist& acceleration) {
-  Flow& flow = flow_of(i);
+  Flow& flow = own_flow(i);
   check_ready(flow, t);
   flow.held = true;
   set_support(i, std::nullopt);
-  bodies_[i].rubs.clear();
-  bodies_[i].turns = false;
-  bodies_[i].worked.clear();
+  forget_rubs(i);
   set_forces(flow);
   flow.island.constant_force[0] = run_.model.inertia(i).mass * acceleration.linear;
-  flow.states[0] = booked_[i] = now_[i];
-  flow.booked = t;
+  flow.states[0] = flow.booked[0] = now_[i];
+  booked_until(flow) = t;
   if (run_.options.roundoff) {
     flow.launched = flow.states;
     flow.lost = 0.0;
@@ -210,7 +286,7 @@ void EventMotions::rub(BodyIndex i, Instant t, Rub rub) {
   rub.from_a = at(rub.a, t);
   rub.from_b = at(rub.b, t);
   rub.booked = rub.begun = t;
-  bodies_[i].rubs.push_back(rub);
+  tie(i).rubs.push_back(rub);
 }
 
 void EventMotions::go_on(BodyIndex i, Instant t) {
@@ -218,7 +294,7 @@ void EventMotions::go_on(BodyIndex i, Instant t) {
     return drive(i, t);
   }
   book(i, t);
-  if (bodies_[i].support) {
+  if (support(i)) {
     bring(i, t);  // where its surface took it, which the stepper does not know
     launch(i, t);
   } else {
@@ -228,10 +304,10 @@ void EventMotions::go_on(BodyIndex i, Instant t) {
 
 /// One stepper step, as motions.
 void EventMotions::next_segment(Flow& flow, Instant t) {
-  for (std::size_t k = 0; k < flow.states.size(); ++k) {
-    booked_[flow.island.bodies[k]] = flow.states[k];
+  if (!is_shared(flow)) {
+    flow.booked = flow.states;
   }
-  flow.booked = t;
+  booked_until(flow) = t;
   if (run_.options.roundoff) {
     flow.launched = flow.states;
     flow.lost = 0.0;
@@ -259,6 +335,7 @@ void EventMotions::next_segment(Flow& flow, Instant t) {
   }
   hold(flow, t);
   const BodyIndex first = flow.island.bodies.front();
+  assert(!is_shared(flow) || std::isinf(step.advanced));
   if (std::isfinite(step.advanced)) {
     run_.agenda.push(t + step.advanced, Due::segment_end, first, first);
   }
@@ -272,16 +349,14 @@ void EventMotions::drive(BodyIndex i, Instant t) {
 }
 
 void EventMotions::keep_motion(BodyIndex i, const Motion& motion) {
-  if (whole_.empty()) {
-    bodies_[i].motion = motion;
-  } else {
-    whole_[i] = motion;
-  }
+  table_.keep(i, motion);
+  flies_[i] = static_cast<char>(
+      motion.position.degree() <= 2 && std::holds_alternative<Sphere>(run_.model.shape(i)) &&
+      run_.model.is_free(i) && !support(i) && std::isinf(motion.duration));
 }
 
 void EventMotions::set_motion(BodyIndex i, const Motion& motion) {
   keep_motion(i, motion);
-  set_flight(i, motion);
   run_.agenda.renew(i);
   if (run_.wants_motions) {
     tell_motion(i, motion);
@@ -302,47 +377,39 @@ void EventMotions::go_on_as(BodyIndex i, const Image& n) {
   Motion motion = of(i);
   motion.position[0] += shift;
   keep_motion(i, motion);
-  set_flight(i, motion);
   now_[i].pose.position += shift;
-  booked_[i].pose.position += shift;
+  if (Flow& flow = flow_of(i); !is_shared(flow)) {
+    const auto place = std::find(flow.island.bodies.begin(), flow.island.bodies.end(), i);
+    flow.booked[static_cast<std::size_t>(place - flow.island.bodies.begin())].pose.position +=
+        shift;
+  }
   for (std::size_t k = 0; k < 3; ++k) {
     run_.boxes_on[i][k] -= n[k];
   }
 }
 
 void EventMotions::set_support(BodyIndex i, const std::optional<Support>& support) {
-  if (const auto& before = bodies_[i].support) {
+  if (const auto& before = ties(i).support) {
     --riders_[before->surface];
   }
   if (support) {
     ++riders_[support->surface];
+    tie(i).support = support;
+  } else if (ties_[i] != nullptr) {
+    ties_[i]->support.reset();
   }
-  bodies_[i].support = support;
 }
 
-void EventMotions::set_flight(BodyIndex i, const Motion& motion) {
-  const Shape& shape = run_.model.shape(i);
-  const bool parabola = motion.position.degree() <= 2;
-  flies_[i] = static_cast<char>(parabola && std::holds_alternative<Sphere>(shape) &&
-                                run_.model.is_free(i) && !bodies_[i].support &&
-                                std::isinf(motion.duration));
-  if (!parabola) {
-    flights_[i].radius = std::numeric_limits<double>::infinity();
-    return;
+void EventMotions::set_fields(BodyIndex i, std::vector<BodyIndex> fields) {
+  if (ties_[i] != nullptr || !fields.empty()) {
+    tie(i).fields = std::move(fields);
   }
-  const auto coefficient = [&](int k) {
-    return k <= motion.position.degree() ? Vector3(motion.position[k]) : Vector3(Vector3::Zero());
-  };
-  // What is no ball may touch by what a detector leaves and its bounding ball, rounded, does not.
-  const double more = std::holds_alternative<Sphere>(shape) ? 1.0 : 1.0 + 0x1p-20;
-  flights_[i] = {coefficient(0), coefficient(1), 2.0 * coefficient(2), motion.start,
-                 more * bounding_radius(shape) + motion.error_radius};
 }
 
 /// A supported ball rides on its surface until its face ends or draws away.
 void EventMotions::hold(Flow& flow, Instant t) {
   const BodyIndex i = flow.island.bodies.front();
-  const std::optional<Support>& support = bodies_[i].support;
+  const std::optional<Support>& support = ties(i).support;
   if (!support) {
     return;
   }
@@ -372,12 +439,12 @@ void EventMotions::hold(Flow& flow, Instant t) {
 }
 
 void EventMotions::carry(BodyIndex i, BodyIndex hand, const BodyState& state, Instant t) {
-  Flow& flow = flow_of(i);
+  Flow& flow = own_flow(i);
   now_[i] = state;
   mark_brought(i, t);
-  run_.account.carried(flow.island, t, booked_, now_);
-  booked_[i] = state;
-  flow.booked = t;
+  run_.account.carried(flow.island, t, flow.booked, {&state, 1});
+  flow.booked[0] = state;
+  booked_until(flow) = t;
   flow.carried = true;
   Motion motion = of(hand).shifted(t - start_of(hand));
   motion.rotation = RotationKind::fixed;
@@ -389,13 +456,13 @@ void EventMotions::carry(BodyIndex i, BodyIndex hand, const BodyState& state, In
 // --- Forces ------------------------------------------------------------------------------------
 
 bool EventMotions::is_in_field(BodyIndex i, BodyIndex field) const {
-  const std::vector<BodyIndex>& fields = bodies_[i].fields;
+  const std::vector<BodyIndex>& fields = ties(i).fields;
   return std::find(fields.begin(), fields.end(), field) != fields.end();
 }
 
 Vector3 EventMotions::field_forces_at(BodyIndex i) const {
   Vector3 sum = Vector3::Zero();
-  for (const BodyIndex field : bodies_[i].fields) {
+  for (const BodyIndex field : ties(i).fields) {
     sum += field_force(run_.model, field, now_[field], i);
   }
   return sum;
@@ -403,7 +470,7 @@ Vector3 EventMotions::field_forces_at(BodyIndex i) const {
 
 /// What is constant over a segment, N.
 Vector3 EventMotions::net_force(BodyIndex i) const {
-  return run_.model.gravity_force(i) + field_forces_[i];
+  return run_.model.gravity_force(i) + ties(i).field_force;
 }
 
 /// That and what depends on the state, of a body that is alone in its island, N.
@@ -422,7 +489,7 @@ double EventMotions::pressing(BodyIndex ball, const Support& support, Instant t,
     return under.acceleration(std::min(t - under.start, under.duration));
   };
   Vector3 own = acting_force(ball, t, now_[ball]) / run_.model.inertia(ball).mass;
-  if (const std::optional<Support>& other = bodies_[ball].support; held && other) {
+  if (const std::optional<Support>& other = ties(ball).support; held && other) {
     own += other->normal * other->normal.dot(surface_acceleration(other->surface) - own);
   }
   return support.normal.dot(surface_acceleration(support.surface) - own);
@@ -443,9 +510,11 @@ void EventMotions::set_forces(Flow& flow) {
   flow.support.reset();
   for (std::size_t k = 0; k < flow.island.bodies.size(); ++k) {
     const BodyIndex i = flow.island.bodies[k];
-    field_forces_[i] = field_forces_at(i);
+    if (ties_[i] != nullptr) {
+      ties_[i]->field_force = field_forces_at(i);
+    }
     Vector3 force = net_force(i);
-    if (const auto& support = bodies_[i].support) {
+    if (const auto& support = ties(i).support) {
       for (int pass = 0; pass < 2; ++pass) {  // the first leaves roundoff of what it takes away
         force -= support->normal * support->normal.dot(force);
       }
@@ -468,9 +537,9 @@ void EventMotions::note(EventKind kind, BodyIndex a, BodyIndex b, Instant t, Gra
 }
 
 std::int64_t EventMotions::evaluations() const {
-  std::int64_t sum = 0;
-  for (const Flow& flow : flows_) {
-    sum += flow.stepper->evaluations();
+  std::int64_t sum = evaluations_ + (shared_ != nullptr ? shared_->stepper->evaluations() : 0);
+  for (const auto& flow : flows_) {
+    sum += flow != nullptr ? flow->stepper->evaluations() : 0;
   }
   return sum;
 }
@@ -480,56 +549,81 @@ void EventMotions::Rub::persist(Archive& archive) {
           from_a, from_b, booked);
 }
 
+void EventMotions::Ties::persist(Archive& archive) {
+  archive(support, fields, field_force, rubs, turns, worked);
+  archive.require(turns ? worked.size() == 1 : worked.empty());
+}
+
 void EventMotions::Flow::persist(Archive& archive) {
   archive(island.constant_force, exact, carried, held, states, launched, lost, booked,
           projection.velocity, projection.driven, projection.position);
   stepper->persist(archive);
 }
 
-void EventMotions::persist(Archive& archive) {
-  if (archive.reading()) {
-    for (Flow& flow : flows_) {
-      flow.stepper->start(flow.island, Instant{}, flow.states);
-    }
-  }
-  archive(now_, booked_, field_forces_);
-  for (BodyIndex i = 0; i < bodies_.size(); ++i) {
+void EventMotions::persist_bodies(Archive& archive) {
+  for (BodyIndex i = 0; i < ties_.size(); ++i) {
     Motion motion = of(i);
-    MovingBody& body = bodies_[i];
-    archive(motion, body.support, body.fields, body.rubs, body.turns, body.worked);
-    archive.require(body.turns ? body.worked.size() == 1 : body.worked.empty());
+    bool tied = ties_[i] != nullptr;
+    archive(motion, tied);
+    if (tied) {
+      archive(tie(i));
+    }
     if (archive.reading()) {
       keep_motion(i, motion);
     }
   }
   std::fill(riders_.begin(), riders_.end(), 0U);
-  if (archive.reading()) {
-    for (BodyIndex i = 0; i < bodies_.size(); ++i) {
-      set_flight(i, of(i));
+  for (BodyIndex i = 0; i < ties_.size(); ++i) {
+    archive.require(!support(i) || support(i)->surface < ties_.size());
+    if (support(i)) {
+      ++riders_[support(i)->surface];
+    }
+    for (const BodyIndex field : fields(i)) {
+      archive.require(field < ties_.size());
+    }
+    for (const Rub& rub : ties(i).rubs) {
+      archive.require(rub.a < ties_.size() && rub.b < ties_.size());
     }
   }
-  for (const MovingBody& body : bodies_) {
-    archive.require(!body.support || body.support->surface < bodies_.size());
-    if (body.support) {
-      ++riders_[body.support->surface];
+}
+
+void EventMotions::persist(Archive& archive) {
+  archive(now_);
+  persist_bodies(archive);
+  std::int64_t gone = evaluations_ + (shared_ != nullptr ? shared_->stepper->evaluations() : 0);
+  archive(gone);
+  evaluations_ = archive.reading() ? gone : evaluations_;
+  for (std::size_t k = 0; k < flows_.size(); ++k) {
+    const BodyIndex first = run_.model.islands()[k].bodies.front();
+    bool own = flows_[k] != nullptr;
+    archive(own, booked_until_[k]);
+    archive.require(own || shares_[k] != 0);
+    if (!own) {
+      continue;
     }
-    for (const BodyIndex field : body.fields) {
-      archive.require(field < bodies_.size());
+    Flow& flow = own_flow(first);
+    if (archive.reading()) {
+      flow.stepper->start(flow.island, Instant{}, flow.states);
     }
-    for (const Rub& rub : body.rubs) {
-      archive.require(rub.a < bodies_.size() && rub.b < bodies_.size());
-    }
-  }
-  for (Flow& flow : flows_) {
     archive(flow);
+    if (archive.reading()) {
+      set_forces_as_launched(flow);
+    }
   }
-  if (archive.reading()) {
-    for (Flow& flow : flows_) {
-      const std::vector<Vector3> forces = field_forces_;  // as they were when it was launched
-      const std::vector<Vector3> constant = flow.island.constant_force;
-      set_forces(flow);
-      flow.island.constant_force = constant;
-      field_forces_ = forces;
+}
+
+/// What is no part of a checkpoint; forces are what they were when it was launched.
+void EventMotions::set_forces_as_launched(Flow& flow) {
+  const std::vector<Vector3> constant = flow.island.constant_force;
+  given_.clear();
+  for (const BodyIndex i : flow.island.bodies) {
+    given_.push_back(ties(i).field_force);
+  }
+  set_forces(flow);
+  flow.island.constant_force = constant;
+  for (std::size_t k = 0; k < given_.size(); ++k) {
+    if (const BodyIndex i = flow.island.bodies[k]; ties_[i] != nullptr) {
+      ties_[i]->field_force = given_[k];
     }
   }
 }

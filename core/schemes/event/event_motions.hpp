@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/schemes/event/event_run.hpp"
-#include "core/schemes/event/stored_motion.hpp"
+#include "core/schemes/event/motion_table.hpp"
 #include "core/schemes/shared/island_run.hpp"
 #include "core/schemes/shared/support.hpp"
 
@@ -25,44 +25,18 @@ class EventMotions {
   /// First motions of all bodies, from the model's initial state.
   void begin();
 
-  [[nodiscard]] Motion of(BodyIndex i) const {
-    return whole_.empty() ? bodies_[i].motion.motion() : whole_[i];
-  }
-  [[nodiscard]] Instant start_of(BodyIndex i) const {
-    return whole_.empty() ? bodies_[i].motion.start() : whole_[i].start;
-  }
-  [[nodiscard]] double duration_of(BodyIndex i) const {
-    return whole_.empty() ? bodies_[i].motion.duration() : whole_[i].duration;
-  }
-  [[nodiscard]] Instant end_of(BodyIndex i) const {
-    return whole_.empty() ? bodies_[i].motion.end() : whole_[i].end();
-  }
+  [[nodiscard]] Motion of(BodyIndex i) const { return table_.of(i); }
+  [[nodiscard]] Instant start_of(BodyIndex i) const { return table_.start(i); }
+  [[nodiscard]] double duration_of(BodyIndex i) const { return table_.duration(i); }
+  [[nodiscard]] Instant end_of(BodyIndex i) const { return table_.end(i); }
   /// A shape with the motion that it has, for as long as this lives.
-  class Moving {
-   public:
-    Moving(const Shape& shape, const Motion& whole) : shape_(shape), motion_(&whole) {}
-    Moving(const Shape& shape, const StoredMotion& stored)
-        : shape_(shape), made_(stored.motion()), motion_(&*made_) {}
-    Moving(const Moving&) = delete;
-    Moving& operator=(const Moving&) = delete;
-    operator MovingShape() const { return {shape_, *motion_}; }
-    [[nodiscard]] const Motion& motion() const { return *motion_; }
-
-   private:
-    const Shape& shape_;
-    std::optional<Motion> made_;
-    const Motion* motion_;
-  };
-  [[nodiscard]] Moving moving(BodyIndex i) const {
-    return whole_.empty() ? Moving(run_.model.shape(i), bodies_[i].motion)
-                          : Moving(run_.model.shape(i), whole_[i]);
-  }
+  [[nodiscard]] MotionTable::Moving moving(BodyIndex i) const { return table_.moving(i); }
   /// Whether i is a ball on a parabola until it is launched again, and held by nothing.
   [[nodiscard]] bool flies(BodyIndex i) const { return flies_[i] != 0; }
   /// The ball that bounds body i, on its way; its radius is infinite if it is on no parabola, or
   /// the body is unbounded.
-  [[nodiscard]] const BallFlight& flight(BodyIndex i) const { return flights_[i]; }
-  [[nodiscard]] BodyState at(BodyIndex i, Instant t) const;
+  [[nodiscard]] const BallFlight& flight(BodyIndex i) const { return table_.flight(i); }
+  [[nodiscard]] BodyState at(BodyIndex i, Instant t) const { return table_.at(i, t); }
   /// Scratch of the event at hand, by body: an event brings a state here, changes it, and launches
   /// the body from it. Meaningless otherwise, except for fixed bodies.
   [[nodiscard]] BodyState& now(BodyIndex i) { return now_[i]; }
@@ -136,25 +110,24 @@ class EventMotions {
   /// Body i has the hand's translation from t on, and its own orientation; what takes it from where
   /// it was to `state` is the hand's work. Until `let_go`.
   void carry(BodyIndex i, BodyIndex hand, const BodyState& state, Instant t);
-  void let_go(BodyIndex i) { flow_of(i).carried = false; }
+  void let_go(BodyIndex i) { own_flow(i).carried = false; }
 
   /// Body i, which nothing holds, goes on as its image n: it is the same for whoever is told. The
   /// ledger has followed it to where it is `now`; it is launched before it is asked about again.
   void go_on_as(BodyIndex i, const Image& n);
 
   /// The surface that ball i rests or slides on.
-  [[nodiscard]] const std::optional<Support>& support(BodyIndex i) const {
-    return bodies_[i].support;
-  }
+  [[nodiscard]] const std::optional<Support>& support(BodyIndex i) const { return ties(i).support; }
   /// Takes effect with the next launch.
   void set_support(BodyIndex i, const std::optional<Support>& support);
   /// How many balls a surface supports.
   [[nodiscard]] std::uint32_t riders(BodyIndex surface) const { return riders_[surface]; }
   [[nodiscard]] bool is_supported_by(BodyIndex ball, BodyIndex surface) const {
-    return bodies_[ball].support && bodies_[ball].support->surface == surface;
+    return support(ball) && support(ball)->surface == surface;
   }
   /// The fields that body i is in; they act from the next launch on.
-  [[nodiscard]] std::vector<BodyIndex>& fields(BodyIndex i) { return bodies_[i].fields; }
+  [[nodiscard]] const std::vector<BodyIndex>& fields(BodyIndex i) const { return ties(i).fields; }
+  void set_fields(BodyIndex i, std::vector<BodyIndex> fields);
   [[nodiscard]] bool is_in_field(BodyIndex i, BodyIndex field) const;
   /// Whether a force takes energy from i, so that hops die down whatever the restitution.
   [[nodiscard]] bool is_damped(BodyIndex i) const;
@@ -180,16 +153,19 @@ class EventMotions {
   void persist(Archive& archive);
 
  private:
-  struct MovingBody {
-    StoredMotion motion;  ///< of no meaning where there are few bodies
-    std::optional<Support> support;
-    std::vector<BodyIndex> fields;
-    std::vector<Rub> rubs;
+  /// What holds a body, pushes it or rubs against it: of most that fly, nothing.
+  struct Ties {
+    std::optional<Support> support{};
+    std::vector<BodyIndex> fields{};
+    Vector3 field_force = Vector3::Zero();  ///< N, as of the last launch
+    std::vector<Rub> rubs{};
     bool turns = false;                   ///< while it touches
     std::vector<Polynomial<3>> worked{};  ///< see `Turn`; none while nothing turns
+
+    [[nodiscard]] bool any() const { return support || !fields.empty() || !rubs.empty() || turns; }
+    void persist(Archive& archive);
   };
-  /// An island, and how far the ledger has followed it. Its states are those at the end of the
-  /// segment, and so is its projection.
+  /// An island. Its states are those at the end of the segment, and so is its projection.
   struct Flow : IslandRun {
     using IslandRun::IslandRun;
 
@@ -198,7 +174,7 @@ class EventMotions {
     std::unique_ptr<SupportForce> support{};  ///< while it slides under state-dependent forces
     std::vector<BodyState> launched{};        ///< where the segment began: for replays
     double lost = 0.0;                        ///< to roundoff, in the segment so far, J
-    Instant booked{};                         ///< how far the ledger has followed it
+    std::vector<BodyState> booked{};          ///< as far as the ledger has followed it
 
     void persist(Archive& archive);
   };
@@ -208,7 +184,6 @@ class EventMotions {
   void set_motion(BodyIndex i, const Motion& motion);
   void keep_motion(BodyIndex i, const Motion& motion);
   void tell_motion(BodyIndex i, const Motion& motion);
-  void set_flight(BodyIndex i, const Motion& motion);
   void hold(Flow& flow, Instant t);
   void set_forces(Flow& flow);
   [[nodiscard]] Vector3 field_forces_at(BodyIndex i) const;
@@ -221,7 +196,23 @@ class EventMotions {
   [[nodiscard]] double riding_work(const Flow& flow, Instant t);
   [[nodiscard]] double new_roundoff(Flow& flow, Instant t);
 
-  [[nodiscard]] Flow& flow_of(BodyIndex i) { return flows_[run_.model.island_of(i)]; }
+  [[nodiscard]] std::unique_ptr<Flow> make_flow(std::size_t island) const;
+  [[nodiscard]] bool may_share(std::size_t island);
+  [[nodiscard]] bool is_shared(const Flow& flow) const { return &flow == shared_.get(); }
+  /// That of the island of i: its own, or the one that all share which have none. Of no meaning
+  /// once that of another island is asked for.
+  [[nodiscard]] Flow& flow_of(BodyIndex i);
+  /// One that the island of i has for itself from now on.
+  Flow& own_flow(BodyIndex i);
+  /// The one that its next launch takes: what nothing ties shares one.
+  Flow& flow_to_launch(BodyIndex i);
+  [[nodiscard]] Instant& booked_until(const Flow& flow) { return booked_until_[flow.number]; }
+  [[nodiscard]] Instant booked_until(const Flow& flow) const { return booked_until_[flow.number]; }
+  [[nodiscard]] const Ties& ties(BodyIndex i) const { return ties_[i] ? *ties_[i] : no_ties_; }
+  [[nodiscard]] Ties& tie(BodyIndex i);
+  void forget_rubs(BodyIndex i);
+  void persist_bodies(Archive& archive);
+  void set_forces_as_launched(Flow& flow);
   /// `now` of body i is its state at t. What is launched must be: asserts hold it.
   void mark_brought([[maybe_unused]] BodyIndex i, [[maybe_unused]] Instant t) {
 #ifndef NDEBUG
@@ -231,19 +222,26 @@ class EventMotions {
   void check_ready(const Flow& flow, Instant t) const;
 
   EventRun& run_;
-  std::vector<MovingBody> bodies_;
-  std::vector<std::uint32_t> riders_;  ///< by surface
-  std::vector<BallFlight> flights_;
+  const Method& method_;
+  MotionTable table_;
+  const Ties no_ties_{};
+  std::vector<std::unique_ptr<Ties>> ties_;  ///< null: none
+  std::vector<std::uint32_t> riders_;        ///< by surface
   std::vector<char> flies_;
-  std::vector<Flow> flows_;
+  std::vector<std::unique_ptr<Flow>> flows_;  ///< by island; null: it shares one
+  std::vector<char> shares_;                  ///< by island: whether it may
+  std::unique_ptr<Flow>
+      shared_;  ///< of one body that falls freely, whichever it is now; null: none
+  std::vector<Instant> booked_until_;  ///< by island: how far the ledger has followed it
+  std::int64_t evaluations_ = 0;       ///< of flows that are no more
   State now_;
 #ifndef NDEBUG
   std::vector<Instant> brought_;  ///< by body: when `now` is
 #endif
-  State booked_;                       ///< where the ledger is
-  std::vector<Vector3> field_forces_;  ///< N, as of the last launch
-  std::vector<Motion> whole_;          ///< of few bodies, where room is no matter; else empty
-  std::vector<Motion> motions_;        ///< scratch: of the bodies of one island
+  // Scratch, by place in an island.
+  std::vector<Motion> motions_;
+  std::vector<BodyState> from_, to_;
+  std::vector<Vector3> given_;
 };
 
 }  // namespace core

@@ -13,21 +13,22 @@ inline namespace core {
 
 EventPredictor::EventPredictor(EventRun& run, const EventMotions& motions, const Grasps& grasps,
                                const ContactGraph& graph, const Method& method)
-    : run_(run), motions_(motions), grasps_(grasps), graph_(graph), bodies_(run.model.size()) {
+    : run_(run), motions_(motions), grasps_(grasps), graph_(graph), since_(run.model.size()) {
   if (!run.model.asks_every_pair() || run.model.scene().periodic) {
     neighbourhood_ = method.neighbourhood(run.model, run.options.toi_tolerance);
     return;
   }
+  partners_.resize(run.model.size());
   for (const auto& [a, b] : run.model.pairs()) {
-    bodies_[a].partners.push_back(b);
-    bodies_[b].partners.push_back(a);
+    partners_[a].push_back(b);
+    partners_[b].push_back(a);
   }
 }
 
 void EventPredictor::predict(BodyIndex i, Instant t, BodyIndex except) {
-  bodies_[i].since = t;
+  since_[i] = t;
   if (!neighbourhood_) {
-    for (const BodyIndex j : bodies_[i].partners) {
+    for (const BodyIndex j : partners_[i]) {
       if (j != except) {
         predict_near(i, {j});
       }
@@ -67,9 +68,7 @@ void EventPredictor::enter(BodyIndex i, Instant t) {
 }
 
 void EventPredictor::predict_all(Instant t) {
-  for (Watched& body : bodies_) {
-    body.since = t;
-  }
+  std::fill(since_.begin(), since_.end(), t);
   if (!neighbourhood_) {
     for (const auto& [a, b] : run_.model.pairs()) {
       predict_near(a, {b});
@@ -91,6 +90,7 @@ void EventPredictor::predict_all(Instant t) {
     survey(i, before_all);
     run_.agenda.file(i);
   }
+  neighbours_ = {};  // everybody is near a wall
 }
 
 /// Asks about i and all of `neighbours_`.
@@ -184,7 +184,7 @@ void EventPredictor::solids_near(BodyIndex i, std::vector<BodyIndex>& out) {
     }
   };
   if (!neighbourhood_) {
-    std::for_each(bodies_[i].partners.begin(), bodies_[i].partners.end(), add);
+    std::for_each(partners_[i].begin(), partners_[i].end(), add);
     return;
   }
   neighbours_.clear();
@@ -207,7 +207,7 @@ bool EventPredictor::goes_alone(BodyIndex i) const {
 void EventPredictor::go_on_as(BodyIndex i, const Image& n) { neighbourhood_->go_on_as(i, n); }
 
 void EventPredictor::predict_near(BodyIndex i, const Neighbour& j, Instant known) {
-  ask(i, j, std::max(bodies_[i].since, bodies_[j.body].since), known);
+  ask(i, j, std::max(since_[i], since_[j.body]), known);
 }
 
 void EventPredictor::predict_pair(BodyIndex i, BodyIndex j, const Image& n, Instant t) {
@@ -447,10 +447,8 @@ TimeOfImpact EventPredictor::time_of_separation(const Question& of) {
                                        {of.from, of.duration}, run_.options.toi_tolerance));
 }
 
-void EventPredictor::Watched::persist(Archive& archive) { archive(since); }
-
 void EventPredictor::persist(Archive& archive) {
-  archive(bodies_);
+  archive(since_);
   if (neighbourhood_) {
     neighbourhood_->persist(archive);
   }

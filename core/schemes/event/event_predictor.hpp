@@ -54,13 +54,6 @@ class EventPredictor {
   void persist(Archive& archive);
 
  private:
-  struct Watched {
-    std::vector<BodyIndex> partners;  ///< what it can interact with, where there is no broad phase
-    Instant since;                    ///< from when on its pairs are asked
-
-    void persist(Archive& archive);
-  };
-
   /// A pair from an instant on; what was due up to `known` has been dealt with.
   struct Question {
     BodyIndex a = 0;
@@ -114,7 +107,9 @@ class EventPredictor {
   const Grasps& grasps_;
   const ContactGraph& graph_;
   std::unique_ptr<Neighbourhood> neighbourhood_;  ///< null: every partner is a neighbour
-  std::vector<Watched> bodies_;
+  /// Without that, by body: what it can interact with.
+  std::vector<std::vector<BodyIndex>> partners_;
+  std::vector<Instant> since_;         ///< by body: from when on its pairs are asked
   std::vector<Neighbour> neighbours_;  ///< scratch, as what follows
   std::vector<Neighbour> balls_;
   std::vector<BallFlight> flights_;

@@ -13,15 +13,23 @@ void ImpactHistory::add(const Impact& impact, Instant t) {
     chain_ = 0;
     partners_.clear();
   }
-  ++chain_;
-  if (std::find(partners_.begin(), partners_.end(), impact.partner) == partners_.end()) {
+  if (chain_ > 0 && partners_.empty() && impact.partner != last_partner_) {
+    partners_.push_back(last_partner_);
+  }
+  if (!partners_.empty() &&
+      std::find(partners_.begin(), partners_.end(), impact.partner) == partners_.end()) {
     partners_.push_back(impact.partner);
   }
+  ++chain_;
   creeping_ = first || way > impact.tolerance ? 0 : creeping_ + 1;
   const bool again = !first && impact.partner == last_partner_;
   resting_ = impact.rest ? (again ? resting_ + 1 : 1) : 0;
   last_ = t;
   last_partner_ = impact.partner;
+}
+
+std::vector<BodyIndex> ImpactHistory::partners() const {
+  return partners_.empty() && chain_ > 0 ? std::vector<BodyIndex>{last_partner_} : partners_;
 }
 
 bool ImpactHistory::stalls(Instant t, double resolution) {

@@ -29,7 +29,7 @@ class ImpactHistory {
   /// How many impacts hang together, from way to way shorter than `near`.
   [[nodiscard]] std::int64_t chain() const { return chain_; }
   /// Who they were with, each once, in the order of their first.
-  [[nodiscard]] const std::vector<BodyIndex>& partners() const { return partners_; }
+  [[nodiscard]] std::vector<BodyIndex> partners() const;
   /// True where more than 200 in a row followed each other on no way at all. A cradle or the break
   /// of a rack has a few.
   [[nodiscard]] bool creeps() const { return creeping_ > most_creeping; }
@@ -52,7 +52,7 @@ class ImpactHistory {
 
   Instant last_ = Instant::never();
   std::int64_t chain_ = 0;
-  std::vector<BodyIndex> partners_;
+  std::vector<BodyIndex> partners_;  ///< empty while there is but one, which is the last
   BodyIndex last_partner_ = 0;
   int creeping_ = 0;
   int resting_ = 0;

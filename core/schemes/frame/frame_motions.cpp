@@ -10,11 +10,7 @@ namespace kairos {
 inline namespace core {
 
 FrameMotions::FrameMotions(FrameRun& run, const Method& method)
-    : run_(run),
-      trackers_(run.model.size()),
-      paths_(run.model.size()),
-      from_(run.bodies),
-      to_(run.bodies) {
+    : run_(run), trackers_(run.model.size()), paths_(run.model.size()) {
   for (BodyIndex i = 0; i < run.model.size(); ++i) {
     if (run.model.mobility(i) == Mobility::driven) {
       driven_.push_back(i);
@@ -84,7 +80,8 @@ void FrameMotions::advance(double h) {
       if (dense) {
         mover.stepper->dense_output(mover.motions);
       }
-      book_step(mover, run_.bodies, mover.states, start, mover.last_step, true, mover.projection);
+      gather<BodyState>(mover.island, run_.bodies, mover.before);
+      book_step(mover, mover.before, mover.states, start, mover.last_step, true, mover.projection);
       for (std::size_t k = 0; k < mover.states.size(); ++k) {
         run_.bodies[mover.island.bodies[k]] = mover.states[k];
       }
@@ -132,8 +129,7 @@ Motion FrameMotions::last_motion(BodyIndex i) const {
 
 void FrameMotions::carry(BodyIndex i, const BodyState& state) {
   Mover& mover = mover_of(i);
-  to_[i] = state;
-  run_.account.carried(mover.island, run_.time, run_.bodies, to_);
+  run_.account.carried(mover.island, run_.time, {&run_.bodies[i], 1}, {&state, 1});
   run_.bodies[i] = state;
   mover.jumped = true;
 }
@@ -258,21 +254,20 @@ void FrameMotions::fly_on(BodyIndex i, double s, const State& meeting) {
 
 // --- Ledger ------------------------------------------------------------------------------------
 
-/// Books one stepper step, or a part of one: from states by body to states by place in the island.
-void FrameMotions::book_step(Mover& mover, const State& from, const std::vector<BodyState>& to,
-                             Instant t, double h, bool replayable,
+/// Books one stepper step, or a part of one: states are by place in the island.
+void FrameMotions::book_step(Mover& mover, const std::vector<BodyState>& from,
+                             const std::vector<BodyState>& to, Instant t, double h, bool replayable,
                              const JointProjection& projection) {
-  for (std::size_t k = 0; k < to.size(); ++k) {
-    const BodyIndex i = mover.island.bodies[k];
-    to_[i] = to[k];
-    if (run_.wants_motions) {
-      run_.recorder.motion(i, mover.motions[k]);
+  if (run_.wants_motions) {
+    for (std::size_t k = 0; k < to.size(); ++k) {
+      run_.recorder.motion(mover.island.bodies[k], mover.motions[k]);
     }
   }
   const double roundoff =
       run_.options.roundoff && replayable ? roundoff_of(mover, from, to, h) : 0.0;
   const bool exact = mover.closed_form(run_.model);
-  Leg leg{mover.island, from, to_, run_.given_force, exact, roundoff};
+  gather<Vector3>(mover.island, run_.given_force, given_);
+  Leg leg{mover.island, from, to, given_, exact, roundoff};
   if (mover.island.joints != nullptr) {
     leg.contact_work = run_.account.projected(projection);
     leg.riding_work =
@@ -286,13 +281,9 @@ void FrameMotions::book_step(Mover& mover, const State& from, const std::vector<
 }
 
 /// Of the stepper's last step, J; 0 where it cannot be replayed.
-double FrameMotions::roundoff_of(Mover& mover, const State& from, const std::vector<BodyState>& to,
-                                 double h) {
-  mover.before.resize(to.size());
-  for (std::size_t k = 0; k < to.size(); ++k) {
-    mover.before[k] = from[mover.island.bodies[k]];
-  }
-  return mover.roundoff(h, mover.before, [&](std::size_t k) -> const BodyState& { return to[k]; })
+double FrameMotions::roundoff_of(Mover& mover, const std::vector<BodyState>& from,
+                                 const std::vector<BodyState>& to, double h) {
+  return mover.roundoff(h, from, [&](std::size_t k) -> const BodyState& { return to[k]; })
       .value_or(0.0);
 }
 
@@ -329,9 +320,8 @@ void FrameMotions::book_path(Mover& mover, double until) {
       mover.motions[k].duration =
           std::min(mover.motions[k].duration, end - (mover.motions[k].start - run_.time));
       to[k] = at_end ? mover.states[k] : on_path(i, end);
-      from_[i] = mover.booked[k];
     }
-    book_step(mover, from_, to, run_.time + from, end - from, replayable,
+    book_step(mover, mover.booked, to, run_.time + from, end - from, replayable,
               projection_until(mover, from, end));
     mover.booked = to;
     mover.booked_until = end;

@@ -82,12 +82,12 @@ class FrameMotions {
   void end_step(double h);
   void settle(BodyIndex i, double interval);
 
-  void book_step(Mover& mover, const State& from, const std::vector<BodyState>& to, Instant t,
-                 double h, bool replayable, const JointProjection& projection);
+  void book_step(Mover& mover, const std::vector<BodyState>& from, const std::vector<BodyState>& to,
+                 Instant t, double h, bool replayable, const JointProjection& projection);
   [[nodiscard]] static JointProjection projection_until(const Mover& mover, double from,
                                                         double end);
   void book_path(Mover& mover, double until);
-  [[nodiscard]] double roundoff_of(Mover& mover, const State& from,
+  [[nodiscard]] double roundoff_of(Mover& mover, const std::vector<BodyState>& from,
                                    const std::vector<BodyState>& to, double h);
 
   [[nodiscard]] Mover& mover_of(BodyIndex i) { return movers_[run_.model.island_of(i)]; }
@@ -98,7 +98,7 @@ class FrameMotions {
   std::vector<TrackerMemory> trackers_;
   std::vector<std::vector<Motion>> paths_;  ///< of the proposal, by body, end to end
   double proposed_ = 0.0;                   ///< s
-  State from_, to_;                         ///< scratch: the ends of a leg, by body
+  std::vector<Vector3> given_;              ///< scratch: what a leg is given, N
 };
 
 }  // namespace core

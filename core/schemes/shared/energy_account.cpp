@@ -49,11 +49,12 @@ double renewed(const BodyInertia& inertia, const BodyState& from, const BodyStat
   return energy;
 }
 
-void gather(const Island& island, std::span<const BodyState> bodies, std::vector<BodyState>& out) {
-  out.clear();
-  for (const BodyIndex i : island.bodies) {
-    out.push_back(bodies[i]);
+double potential_of(const Island& island, Instant t, std::span<const BodyState> states) {
+  double energy = 0.0;
+  for (const Force* force : island.forces) {
+    energy += force->potential(t, states);
   }
+  return energy;
 }
 
 }  // namespace
@@ -84,12 +85,12 @@ double EnergyAccount::surplus(const Leg& leg) {
   for (std::size_t k = 0; k < leg.island.bodies.size(); ++k) {
     const BodyIndex i = leg.island.bodies[k];
     const BodyInertia& inertia = leg.island.inertia[k];
-    const BodyState& from = leg.from[i];
-    const BodyState& to = leg.to[i];
+    const BodyState& from = leg.from[k];
+    const BodyState& to = leg.to[k];
     const Vector3 displacement = to.pose.position - from.pose.position;
     const Vector3& weight = model_.gravity_force(i);
     const double falls = weight.dot(displacement);
-    const double other = leg.other_force[i].dot(displacement);
+    const double other = leg.other_force[k].dot(displacement);
     ledger_.exchange(falls);
     ledger_.exchange(renewed(inertia, from, to));
     for (int axis = 0; axis < 3; ++axis) {
@@ -191,16 +192,15 @@ void EnergyAccount::leg(const Leg& leg, std::span<const Motion> motions, Instant
                         double duration) {
   assert(motions.size() == leg.island.bodies.size() && duration >= 0.0);
   double truncation = surplus(leg);
-  gather(leg.island, leg.from, from_);
-  gather(leg.island, leg.to, to_);
   for (const Force* force : leg.island.forces) {
     if (force->conservative()) {
-      const double work = force->potential(start, from_) - force->potential(start + duration, to_);
+      const double work =
+          force->potential(start, leg.from) - force->potential(start + duration, leg.to);
       ledger_.exchange(work);
       truncation -= work;
     } else {
       const double stored =
-          force->potential(start + duration, to_) - force->potential(start, from_);
+          force->potential(start + duration, leg.to) - force->potential(start, leg.from);
       const double work = work_along(*force, motions, start, duration);
       ledger_.add(EnergyLine::field_work, work + stored);
       truncation -= work;
@@ -215,16 +215,15 @@ void EnergyAccount::carried(const Island& island, Instant t, std::span<const Bod
                             std::span<const BodyState> to) {
   double work = 0.0;
   for (std::size_t k = 0; k < island.bodies.size(); ++k) {
-    const BodyIndex i = island.bodies[k];
     const BodyInertia& inertia = island.inertia[k];
-    work += kinetic_gain(inertia.mass, from[i].twist.linear, to[i].twist.linear) -
-            model_.gravity_force(i).dot(to[i].pose.position - from[i].pose.position);
+    work += kinetic_gain(inertia.mass, from[k].twist.linear, to[k].twist.linear) -
+            model_.gravity_force(island.bodies[k]).dot(to[k].pose.position - from[k].pose.position);
     if (inertia.rotates) {
-      work += spin_energy(inertia, to[i]) - spin_energy(inertia, from[i]);
+      work += spin_energy(inertia, to[k]) - spin_energy(inertia, from[k]);
     }
   }
   if (!island.forces.empty()) {
-    work += island_potential(island, t, to) - island_potential(island, t, from);
+    work += potential_of(island, t, to) - potential_of(island, t, from);
   }
   ledger_.add(EnergyLine::conveyor_and_hand, work);
 }
@@ -248,7 +247,8 @@ void EnergyAccount::open(Instant t, std::span<const BodyState> bodies) {
     ledger_.exchange(model_.gravity_potential(i, bodies[i].pose.position));
   }
   for (const Island& island : model_.islands()) {
-    ledger_.exchange(island_potential(island, t, bodies));
+    gather(island, bodies, gathered_);
+    ledger_.exchange(potential_of(island, t, gathered_));
   }
 }
 
@@ -275,20 +275,11 @@ double EnergyAccount::potential(Instant t, std::span<const BodyState> bodies) {
   }
   for (const Island& island : model_.islands()) {
     if (!island.forces.empty()) {
-      sum.add(island_potential(island, t, bodies));
+      gather(island, bodies, gathered_);
+      sum.add(potential_of(island, t, gathered_));
     }
   }
   return sum.value();
-}
-
-double EnergyAccount::island_potential(const Island& island, Instant t,
-                                       std::span<const BodyState> bodies) {
-  gather(island, bodies, from_);
-  double sum = 0.0;
-  for (const Force* force : island.forces) {
-    sum += force->potential(t, from_);
-  }
-  return sum;
 }
 
 }  // namespace core

@@ -14,13 +14,12 @@ inline namespace core {
 /// One island over one stretch of time, as the ledger books it.
 struct Leg {
   const Island& island;
-  std::span<const BodyState> from;  ///< indexed by `BodyIndex`
-  std::span<const BodyState> to;    ///< indexed by `BodyIndex`
-  std::span<const Vector3>
-      other_force;            ///< N per body: what acts beside gravity, constant; by `BodyIndex`
-  bool exact = false;         ///< the stepper has no truncation error
-  double roundoff = 0.0;      ///< of the step, where a replay told it, J
-  double riding_work = 0.0;   ///< of a driven surface on a ball that it carries, J
+  std::span<const BodyState> from;  ///< by place in the island, as what follows
+  std::span<const BodyState> to;
+  std::span<const Vector3> other_force;  ///< N: what acts beside gravity, constant
+  bool exact = false;                    ///< the stepper has no truncation error
+  double roundoff = 0.0;                 ///< of the step, where a replay told it, J
+  double riding_work = 0.0;              ///< of a driven surface on a ball that it carries, J
   double contact_work = 0.0;  ///< of contact impulses within it, booked by who knows the lines, J
 };
 
@@ -33,6 +32,15 @@ struct Leg {
 /// kg of what it acts on, where gravity is an acceleration.
 [[nodiscard]] Vector3 field_force(const Model& model, BodyIndex field, const BodyState& field_state,
                                   BodyIndex body);
+
+/// What is told of all bodies, of those of an island: by place there.
+template <typename T>
+void gather(const Island& island, std::span<const T> of_all, std::vector<T>& out) {
+  out.clear();
+  for (const BodyIndex i : island.bodies) {
+    out.push_back(of_all[i]);
+  }
+}
 
 /// Books what forces did to the bodies between two states, line by line (see `EnergyLine`).
 class EnergyAccount {
@@ -68,8 +76,8 @@ class EnergyAccount {
     return projection.velocity + projection.position;
   }
 
-  /// A hand took the bodies of an island from one state to another (both by `BodyIndex`): what that
-  /// did to their energy at time t.
+  /// A hand took the bodies of an island from one state to another (both by place in the island):
+  /// what that did to their energy at time t.
   void carried(const Island& island, Instant t, std::span<const BodyState> from,
                std::span<const BodyState> to);
 
@@ -94,13 +102,11 @@ class EnergyAccount {
                                   Instant start, double duration);
   [[nodiscard]] double kinetic(std::span<const BodyState> bodies) const;
   [[nodiscard]] double potential(Instant t, std::span<const BodyState> bodies);
-  [[nodiscard]] double island_potential(const Island& island, Instant t,
-                                        std::span<const BodyState> bodies);
 
   const Model& model_;
   EnergyLedger& ledger_;
   // Scratch, so that booking does not allocate.
-  std::vector<BodyState> from_, to_, along_;
+  std::vector<BodyState> gathered_, along_;
   std::vector<Wrench> wrenches_;
 };
 

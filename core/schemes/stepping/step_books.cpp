@@ -47,7 +47,10 @@ void StepWorld::book_contact(const StepContact& c) {
 
 void StepWorld::book_island(std::size_t k) {
   const Island& island = run_.model.islands()[k];
-  Leg leg{island, start_, bodies_, given_};
+  gather<BodyState>(island, start_, leg_from_);
+  gather<BodyState>(island, bodies_, leg_to_);
+  gather<Vector3>(island, given_, leg_given_);
+  Leg leg{island, leg_from_, leg_to_, leg_given_};
   island_motions_.clear();
   for (const BodyIndex i : island.bodies) {
     leg.contact_work += contact_work_[i];

@@ -122,6 +122,8 @@ class StepWorld {
   std::vector<double> contact_work_;    ///< by body, J
   std::vector<StepContact> contacts_, last_contacts_;
   // Scratch, so that steps do not allocate.
+  std::vector<BodyState> leg_from_, leg_to_;
+  std::vector<Vector3> leg_given_;
   std::vector<Pose> poses_;
   std::vector<BodyState> island_states_;
   std::vector<Wrench> island_wrenches_;

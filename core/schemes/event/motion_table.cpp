@@ -1,0 +1,165 @@
+#include "core/schemes/event/motion_table.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+/// So few bodies keep their motions as they are too, which is faster.
+constexpr std::size_t few = 128;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+bool same_bits(double x, double y) {
+  return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
+}
+bool same_bits(const Vector3& x, const Vector3& y) {
+  return same_bits(x[0], y[0]) && same_bits(x[1], y[1]) && same_bits(x[2], y[2]);
+}
+bool same_bits(const Vector4& x, const Quaternion& q) {
+  return same_bits(x[0], q.w()) && same_bits(x[1], q.x()) && same_bits(x[2], q.y()) &&
+         same_bits(x[3], q.z());
+}
+bool is_positive_zero(const Vector3& x) { return same_bits(x, Vector3(0.0, 0.0, 0.0)); }
+
+Vector3 coefficient(const Polynomial<3>& p, int k) {
+  return k <= p.degree() ? Vector3(p[k]) : Vector3(0.0, 0.0, 0.0);
+}
+
+}  // namespace
+
+MotionTable::MotionTable(const Model& model)
+    : model_(model),
+      flights_(model.size()),
+      forms_(model.size()),
+      place_(model.size(), nowhere),
+      whole_(model.size() <= few ? model.size() : 0) {
+  for (BallFlight& flight : flights_) {
+    flight.radius = infinity;
+  }
+}
+
+void MotionTable::keep(BodyIndex i, const Motion& motion) {
+  set_flight(i, motion);
+  if (!whole_.empty()) {
+    whole_[i] = motion;
+    return;
+  }
+  forms_[i] = form_of(i, motion);
+  if (!forms_[i].is_flight) {
+    store(i, motion);
+  } else if (place_[i] != nowhere) {
+    free_.push_back(place_[i]);
+    place_[i] = nowhere;
+  }
+}
+
+void MotionTable::store(BodyIndex i, const Motion& motion) {
+  if (place_[i] == nowhere && free_.empty()) {
+    place_[i] = static_cast<std::uint32_t>(others_.size());
+    others_.emplace_back();
+  } else if (place_[i] == nowhere) {
+    place_[i] = free_.back();
+    free_.pop_back();
+  }
+  others_[place_[i]] = motion;
+}
+
+void MotionTable::set_flight(BodyIndex i, const Motion& motion) {
+  BallFlight& flight = flights_[i];
+  if (motion.position.degree() > 2) {
+    flight.radius = infinity;
+    return;
+  }
+  const Shape& shape = model_.shape(i);
+  // What is no ball may touch by what a detector leaves and its bounding ball, rounded, does not.
+  const double more = std::holds_alternative<Sphere>(shape) ? 1.0 : 1.0 + 0x1p-20;
+  flight = {coefficient(motion.position, 0), coefficient(motion.position, 1),
+            2.0 * coefficient(motion.position, 2), motion.start,
+            more * bounding_radius(shape) + motion.error_radius};
+}
+
+/// Whether its flight says all of a motion, every bit of it, and how.
+MotionTable::Form MotionTable::form_of(BodyIndex i, const Motion& motion) const {
+  Form form{.is_flight = false};
+  if (!model_.is_free(i) || motion.rotation != RotationKind::fixed ||
+      motion.position.degree() > 2 || motion.velocity.degree() > 1 ||
+      motion.quaternion.degree() > 0 || motion.angular_velocity.degree() > 0) {
+    return form;
+  }
+  const BallFlight& flight = flights_[i];
+  form.position = static_cast<std::uint8_t>(motion.position.degree());
+  form.velocity = static_cast<std::uint8_t>(motion.velocity.degree());
+  form.upright = same_bits(motion.quaternion[0], Quaternion(1.0, 0.0, 0.0, 0.0));
+  form.is_flight =
+      motion.duration == infinity && motion.error_radius == 0.0 &&
+      same_bits(coefficient(motion.position, 2), 0.5 * flight.acceleration) &&
+      same_bits(motion.velocity[0], flight.velocity) &&
+      (form.velocity == 0 || same_bits(motion.velocity[1], flight.acceleration)) &&
+      is_positive_zero(motion.rotation_rate) && is_positive_zero(motion.angular_velocity[0]) &&
+      (form.upright || same_bits(motion.quaternion[0], model_.body(i).initial.pose.orientation));
+  return form;
+}
+
+Motion MotionTable::of(BodyIndex i) const {
+  if (!whole_.empty()) {
+    return whole_[i];
+  }
+  if (!is_flight(i)) {
+    return others_[place_[i]].motion();
+  }
+  const BallFlight& flight = flights_[i];
+  const Form form = forms_[i];
+  Motion motion;
+  motion.start = flight.start;
+  motion.duration = infinity;
+  motion.position.resize(form.position);
+  motion.velocity.resize(form.velocity);
+  motion.position[0] = flight.position;
+  motion.velocity[0] = flight.velocity;
+  if (form.position > 0) {
+    motion.position[1] = flight.velocity;
+  }
+  if (form.position > 1) {
+    motion.position[2] = 0.5 * flight.acceleration;
+  }
+  if (form.velocity > 0) {
+    motion.velocity[1] = flight.acceleration;
+  }
+  const Quaternion q = orientation(i);
+  motion.quaternion[0] = Vector4(q.w(), q.x(), q.y(), q.z());
+  return motion;
+}
+
+BodyState MotionTable::at(BodyIndex i, Instant t) const {
+  if (!whole_.empty()) {
+    const Motion& motion = whole_[i];
+    const double s = std::min(t - motion.start, motion.duration);
+    return {motion.pose(s), motion.twist(s)};
+  }
+  if (!is_flight(i)) {
+    const StoredMotion& motion = others_[place_[i]];
+    return motion.at(std::min(t - motion.start(), motion.duration()));
+  }
+  // Horner, as `Polynomial` does it.
+  const BallFlight& flight = flights_[i];
+  const Form form = forms_[i];
+  const double s = t - flight.start;
+  Vector3 p = flight.position;
+  Vector3 v = flight.velocity;
+  if (form.position == 2) {
+    p = (0.5 * flight.acceleration * s + flight.velocity) * s + flight.position;
+  } else if (form.position == 1) {
+    p = flight.velocity * s + flight.position;
+  }
+  if (form.velocity == 1) {
+    v = flight.acceleration * s + flight.velocity;
+  }
+  return {{p, orientation(i)}, {v, Vector3::Zero()}};
+}
+
+}  // namespace core
+}  // namespace kairos

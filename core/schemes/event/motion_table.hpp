@@ -1,0 +1,93 @@
+#pragma once
+
+#include "core/contact_detector.hpp"
+#include "core/model.hpp"
+#include "core/schemes/event/stored_motion.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+
+/// The motions that bodies have. That of a body that falls freely and does not turn, most of a gas,
+/// is its *flight*, which is kept of every body; a `Motion` is made of it where one is asked for,
+/// the same bit for bit. All other motions are stored beside that.
+class MotionTable {
+ public:
+  explicit MotionTable(const Model& model);
+
+  /// Body i moves like this from now on.
+  void keep(BodyIndex i, const Motion& motion);
+
+  [[nodiscard]] Motion of(BodyIndex i) const;
+  [[nodiscard]] Instant start(BodyIndex i) const {
+    return !whole_.empty() ? whole_[i].start
+           : is_flight(i)  ? flights_[i].start
+                           : others_[place_[i]].start();
+  }
+  [[nodiscard]] double duration(BodyIndex i) const {
+    return !whole_.empty() ? whole_[i].duration
+           : is_flight(i)  ? std::numeric_limits<double>::infinity()
+                           : others_[place_[i]].duration();
+  }
+  [[nodiscard]] Instant end(BodyIndex i) const { return start(i) + duration(i); }
+  /// Where body i is at t and how it moves there; after its motion ends: as at the end.
+  [[nodiscard]] BodyState at(BodyIndex i, Instant t) const;
+  /// Where the ball is that bounds body i; its radius is infinite where that is on no parabola, or
+  /// the body has no end.
+  [[nodiscard]] const BallFlight& flight(BodyIndex i) const { return flights_[i]; }
+
+  /// A shape with the motion that it has, for as long as this lives and no motion is kept.
+  class Moving {
+   public:
+    Moving(const Shape& shape, const Motion& whole) : shape_(shape), motion_(&whole) {}
+    Moving(const Shape& shape, const MotionTable& of, BodyIndex i)
+        : shape_(shape), made_(of.of(i)), motion_(&*made_) {}
+    Moving(const Moving&) = delete;
+    Moving& operator=(const Moving&) = delete;
+    operator MovingShape() const { return {shape_, *motion_}; }
+    [[nodiscard]] const Motion& motion() const { return *motion_; }
+
+   private:
+    const Shape& shape_;
+    std::optional<Motion> made_;
+    const Motion* motion_;
+  };
+  [[nodiscard]] Moving moving(BodyIndex i) const {
+    return whole_.empty() ? Moving(model_.shape(i), *this, i) : Moving(model_.shape(i), whole_[i]);
+  }
+
+ private:
+  /// How a flight is told as a motion.
+  struct Form {
+    std::uint8_t position = 0;  ///< degrees
+    std::uint8_t velocity = 0;
+    bool upright = false;  ///< its orientation is the identity, and else what the body began with
+    bool is_flight = true;
+  };
+
+  [[nodiscard]] bool is_flight(BodyIndex i) const { return forms_[i].is_flight; }
+  [[nodiscard]] Quaternion orientation(BodyIndex i) const {
+    return forms_[i].upright ? Quaternion(1.0, 0.0, 0.0, 0.0)
+                             : model_.body(i).initial.pose.orientation;
+  }
+  void set_flight(BodyIndex i, const Motion& motion);
+  [[nodiscard]] Form form_of(BodyIndex i, const Motion& motion) const;
+  void store(BodyIndex i, const Motion& motion);
+
+  static constexpr std::uint32_t nowhere = ~std::uint32_t{0};
+
+  const Model& model_;
+  std::vector<BallFlight> flights_;
+  std::vector<Form> forms_;
+  std::vector<std::uint32_t> place_;  ///< in `others_`; nowhere: not there
+  std::vector<StoredMotion> others_;
+  std::vector<std::uint32_t> free_;  ///< places in `others_` that nobody has
+  std::vector<Motion> whole_;        ///< of few bodies, where room is no matter; else empty
+};
+
+}  // namespace core
+}  // namespace kairos
