@@ -29,7 +29,7 @@ constexpr double sooner = 1.0 - 0x1p-20;
 
 /// Pairs of one loop, a multiple of what a register holds.
 constexpr std::size_t block = 32;
-constexpr std::size_t widest = 8;
+constexpr std::size_t widest = 4;
 
 /// The other balls of some pairs, component by component.
 struct Others {

@@ -152,11 +152,10 @@ void CellGrid::remove(const CellIndex& cell, BodyIndex i) {
   }
 }
 
-inline void CellGrid::append(const Cell* cell, std::vector<Id>& out) const {
+/// Appends the bodies of a cell and of those chained to it.
+void CellGrid::append_chain(const Cell* cell, std::vector<Id>& out) const {
   while (true) {
-    for (std::uint32_t k = 0; k < cell->count; ++k) {
-      out.push_back(cell->bodies[k]);
-    }
+    out.insert(out.end(), cell->bodies.begin(), cell->bodies.begin() + cell->count);
     if (cell->next == none) {
       return;
     }
@@ -168,20 +167,48 @@ void CellGrid::around(const CellIndex& cell, std::vector<Id>& out) const {
   block(cell, {1, 1, 1}, out);
 }
 
-/// Bodies in the cells at most so many along each axis from a cell.
+/// Bodies in the cells at most one along each axis from a cell: `wide` is 0 or 1.
 void CellGrid::block(const CellIndex& cell, const CellIndex& wide, std::vector<Id>& out) const {
+  constexpr std::size_t most_cells = 27;
   CellIndex first{};
   for (std::size_t k = 0; k < 3; ++k) {
     first[k] = turned(cell[k] - wide[k], k);
   }
+  const std::size_t before = out.size();
+  out.resize(before + (most_cells + 1) * room);
+  Id* end = out.data() + before;
+  Id chains = none;
+  const bool turns = first[0] + 2 * wide[0] >= count_[0];
   std::int64_t z = first[2];
   for (std::int64_t dz = -wide[2]; dz <= wide[2]; ++dz, z = next(z, 2)) {
     std::int64_t y = first[1];
     for (std::int64_t dy = -wide[1]; dy <= wide[1]; ++dy, y = next(y, 1)) {
       const Cell* const row = &cells_[at(0, y, z)];
       std::int64_t x = first[0];
-      for (std::int64_t dx = -wide[0]; dx <= wide[0]; ++dx, x = next(x, 0)) {
-        append(row + x, out);
+      for (std::int64_t dx = -wide[0]; dx <= wide[0]; ++dx, x = turns ? next(x, 0) : x + 1) {
+        // Both places are copied, and as many count as it has: most have none or one.
+        std::copy_n(row[x].bodies.begin(), room, end);
+        end += row[x].count;
+        chains &= row[x].next;
+      }
+    }
+  }
+  out.resize(static_cast<std::size_t>(end - out.data()));
+  if (chains != none) {
+    append_chains(first, wide, out);
+  }
+}
+
+/// What the cells of a block have no room for.
+void CellGrid::append_chains(const CellIndex& first, const CellIndex& wide,
+                             std::vector<Id>& out) const {
+  for (std::int64_t dz = 0; dz <= 2 * wide[2]; ++dz) {
+    for (std::int64_t dy = 0; dy <= 2 * wide[1]; ++dy) {
+      for (std::int64_t dx = 0; dx <= 2 * wide[0]; ++dx) {
+        const Cell& cell = cells_[place(first[0] + dx, first[1] + dy, first[2] + dz)];
+        if (cell.next != none) {
+          append_chain(&chained_[cell.next], out);
+        }
       }
     }
   }
@@ -207,7 +234,7 @@ void CellGrid::entered(const CellIndex& before, const CellIndex& now, std::vecto
     for (std::int64_t y = now[1] - 1; y <= now[1] + 1; ++y) {
       for (std::int64_t x = now[0] - 1; x <= now[0] + 1; ++x) {
         if (!(known(0, x) && known(1, y) && known(2, z))) {
-          append(&cells_[place(x, y, z)], out);
+          append_chain(&cells_[place(x, y, z)], out);
         }
       }
     }
@@ -218,7 +245,7 @@ void CellGrid::within(const CellIndex& low, const CellIndex& high, std::vector<I
   for (std::int64_t z = low[2]; z <= high[2]; ++z) {
     for (std::int64_t y = low[1]; y <= high[1]; ++y) {
       for (std::int64_t x = low[0]; x <= high[0]; ++x) {
-        append(&cells_[place(x, y, z)], out);
+        append_chain(&cells_[place(x, y, z)], out);
       }
     }
   }

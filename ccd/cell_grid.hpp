@@ -84,7 +84,8 @@ class CellGrid {
   }
   Cell& with_room(Cell& first);
   void block(const CellIndex& cell, const CellIndex& wide, std::vector<Id>& out) const;
-  void append(const Cell* cell, std::vector<Id>& out) const;
+  void append_chains(const CellIndex& first, const CellIndex& wide, std::vector<Id>& out) const;
+  void append_chain(const Cell* cell, std::vector<Id>& out) const;
 
   std::array<std::int64_t, 3> count_{};
   std::array<std::int64_t, 3> mask_{};  ///< 0: the count is no power of two

@@ -232,13 +232,20 @@ class Cells final : public Neighbourhood {
   /// Appends whom `found_` holds beside i, each as the image that is around the cell of i: bodies
   /// that fewer than four cells are apart on the torus have one.
   void tell(BodyIndex i, std::vector<Neighbour>& out) const {
+    if (periodic_ == nullptr) {
+      const std::size_t before = out.size();
+      out.resize(before + found_.size());
+      Neighbour* end = out.data() + before;
+      for (const CellGrid::Id j : found_) {
+        end->body = j;
+        end += j == i ? 0 : 1;
+      }
+      out.resize(static_cast<std::size_t>(end - out.data()));
+      return;
+    }
     const CellIndex& cell = places_[i].cell;
     for (const CellGrid::Id j : found_) {
       if (j == i) {
-        continue;
-      }
-      if (periodic_ == nullptr) {
-        out.push_back({j});
         continue;
       }
       Neighbour found{j};

@@ -172,6 +172,10 @@ bool EventAccumulation::rests(BodyIndex a, BodyIndex b, double approach, double 
                               Instant t) const {
   double pressing = 0.0;
   for (const BodyIndex i : {a, b}) {
+    if (motions_.is_flight(i)) {
+      pressing += motions_.flight(i).acceleration.norm();
+      continue;
+    }
     const auto moving = motions_.moving(i);
     const Motion& motion = moving.motion();
     const double s = std::min(t - motion.start, motion.duration);

@@ -31,6 +31,8 @@ class EventMotions {
   [[nodiscard]] Instant end_of(BodyIndex i) const { return table_.end(i); }
   /// A shape with the motion that it has, for as long as this lives.
   [[nodiscard]] MotionTable::Moving moving(BodyIndex i) const { return table_.moving(i); }
+  /// Whether its flight is all there is to know of the motion of i.
+  [[nodiscard]] bool is_flight(BodyIndex i) const { return table_.is_flight(i); }
   /// Whether i is a ball on a parabola until it is launched again, and held by nothing.
   [[nodiscard]] bool flies(BodyIndex i) const { return flies_[i] != 0; }
   /// The ball that bounds body i, on its way; its radius is infinite if it is on no parabola, or

@@ -96,12 +96,19 @@ void EventPredictor::predict_all(Instant t) {
 /// Asks about i and all of `neighbours_`.
 void EventPredictor::survey(BodyIndex i, Instant known) {
   balls_.clear();
+  flights_.clear();
+  const bool flies = motions_.flies(i);
+  const bool periodic = run_.model.scene().periodic.has_value();
   for (const Neighbour& j : neighbours_) {
     if (!run_.model.interacts(i, j.body)) {
       continue;
     }
-    if (motions_.flies(i) && motions_.flies(j.body)) {
+    if (flies && motions_.flies(j.body)) {
       balls_.push_back(j);
+      flights_.push_back(motions_.flight(j.body));
+      if (periodic) {
+        move_to(j.image, flights_.back());
+      }
     } else {
       predict_near(i, j, known);
     }
@@ -112,11 +119,6 @@ void EventPredictor::survey(BodyIndex i, Instant known) {
 /// Those first that i could meet first: of the others it need not know, as it is asked again when
 /// its earliest meeting comes up.
 void EventPredictor::meet_balls(BodyIndex i, Instant known) {
-  flights_.clear();
-  for (const Neighbour& j : balls_) {
-    flights_.push_back(motions_.flight(j.body));
-    move_to(j.image, flights_.back());
-  }
   clear_.resize(balls_.size());
   const BallFlight& own = motions_.flight(i);
   run_.detector.clear_times(own, flights_, run_.options.toi_tolerance, clear_);
@@ -301,23 +303,35 @@ double EventPredictor::allowed_gap(const Question& of) const {
                    run_.model.scene().periodic->shift(of.image).lpNorm<1>();
 }
 
+/// In the epoch, or before the motion of body i ends, m.
+double EventPredictor::coordinates_reached(BodyIndex i) const {
+  if (motions_.is_flight(i)) {
+    const BallFlight& flight = motions_.flight(i);
+    return (0.5 * flight.acceleration.lpNorm<Eigen::Infinity>() * run_.epoch() +
+            flight.velocity.lpNorm<Eigen::Infinity>()) *
+               run_.epoch() +
+           flight.position.lpNorm<Eigen::Infinity>();
+  }
+  const auto moving = motions_.moving(i);
+  const Motion& motion = moving.motion();
+  const double s = std::min(motion.duration, run_.epoch());
+  double reached = 0.0;
+  for (int k = motion.position.degree(); k >= 0; --k) {
+    reached = reached * s + motion.position[k].lpNorm<Eigen::Infinity>();
+  }
+  return reached;
+}
+
 double EventPredictor::touching_gap(BodyIndex a, BodyIndex b) const {
   double coordinates = 0.0;
   double radii = 0.0;
   double errors = 0.0;
   double extent = std::numeric_limits<double>::infinity();
   for (const BodyIndex i : {a, b}) {
-    const auto moving = motions_.moving(i);
-    const Motion& motion = moving.motion();
-    const double s = std::min(motion.duration, run_.epoch());
-    double reached = 0.0;
-    for (int k = motion.position.degree(); k >= 0; --k) {
-      reached = reached * s + motion.position[k].lpNorm<Eigen::Infinity>();
-    }
+    coordinates += coordinates_reached(i);
     const double radius = bounding_radius(run_.model.shape(i));
-    coordinates += reached;
     radii += std::isfinite(radius) ? radius : 0.0;
-    errors += motion.error_radius;
+    errors += motions_.is_flight(i) ? 0.0 : motions_.moving(i).motion().error_radius;
     extent = std::min(extent, smallest_extent(run_.model.shape(i)));
   }
   const double asked = run_.options.toi_tolerance;

@@ -93,6 +93,7 @@ class EventPredictor {
   [[nodiscard]] TimeOfImpact time_of_impact(const Question& of, double duration);
   [[nodiscard]] Motion motion_of(BodyIndex i, const Question& of) const;
   [[nodiscard]] double allowed_gap(const Question& of) const;
+  [[nodiscard]] double coordinates_reached(BodyIndex i) const;
   void push_meeting(const Question& of, const TimeOfImpact& toi);
   void look_nearer(const Question& question, TimeOfImpact toi);
   void predict_parting(const Question& question, Due due);

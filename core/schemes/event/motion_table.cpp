@@ -45,6 +45,7 @@ MotionTable::MotionTable(const Model& model)
 void MotionTable::keep(BodyIndex i, const Motion& motion) {
   set_flight(i, motion);
   if (!whole_.empty()) {
+    forms_[i].is_flight = false;
     whole_[i] = motion;
     return;
   }
@@ -98,7 +99,8 @@ MotionTable::Form MotionTable::form_of(BodyIndex i, const Motion& motion) const 
       motion.duration == infinity && motion.error_radius == 0.0 &&
       same_bits(coefficient(motion.position, 2), 0.5 * flight.acceleration) &&
       same_bits(motion.velocity[0], flight.velocity) &&
-      (form.velocity == 0 || same_bits(motion.velocity[1], flight.acceleration)) &&
+      (form.velocity == 0 ? flight.acceleration.isZero(0.0)
+                          : same_bits(motion.velocity[1], flight.acceleration)) &&
       is_positive_zero(motion.rotation_rate) && is_positive_zero(motion.angular_velocity[0]) &&
       (form.upright || same_bits(motion.quaternion[0], model_.body(i).initial.pose.orientation));
   return form;
@@ -108,30 +110,37 @@ Motion MotionTable::of(BodyIndex i) const {
   if (!whole_.empty()) {
     return whole_[i];
   }
+  Motion motion;
+  make(i, motion);
+  return motion;
+}
+
+void MotionTable::make(BodyIndex i, Motion& out) const {
   if (!is_flight(i)) {
-    return others_[place_[i]].motion();
+    out = others_[place_[i]].motion();
+    return;
   }
   const BallFlight& flight = flights_[i];
   const Form form = forms_[i];
-  Motion motion;
-  motion.start = flight.start;
-  motion.duration = infinity;
-  motion.position.resize(form.position);
-  motion.velocity.resize(form.velocity);
-  motion.position[0] = flight.position;
-  motion.velocity[0] = flight.velocity;
+  out.start = flight.start;
+  out.duration = infinity;
+  out.position.resize(form.position);
+  out.velocity.resize(form.velocity);
+  out.position[0] = flight.position;
+  out.velocity[0] = flight.velocity;
   if (form.position > 0) {
-    motion.position[1] = flight.velocity;
+    out.position[1] = flight.velocity;
   }
   if (form.position > 1) {
-    motion.position[2] = 0.5 * flight.acceleration;
+    out.position[2] = 0.5 * flight.acceleration;
   }
   if (form.velocity > 0) {
-    motion.velocity[1] = flight.acceleration;
+    out.velocity[1] = flight.acceleration;
   }
-  const Quaternion q = orientation(i);
-  motion.quaternion[0] = Vector4(q.w(), q.x(), q.y(), q.z());
-  return motion;
+  if (!form.upright) {
+    const Quaternion q = orientation(i);
+    out.quaternion[0] = Vector4(q.w(), q.x(), q.y(), q.z());
+  }
 }
 
 BodyState MotionTable::at(BodyIndex i, Instant t) const {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace kairos {
@@ -36,6 +37,8 @@ class MotionTable {
   [[nodiscard]] Instant end(BodyIndex i) const { return start(i) + duration(i); }
   /// Where body i is at t and how it moves there; after its motion ends: as at the end.
   [[nodiscard]] BodyState at(BodyIndex i, Instant t) const;
+  /// Whether that is all there is to know of its motion: no error radius, no turning, no end.
+  [[nodiscard]] bool is_flight(BodyIndex i) const { return forms_[i].is_flight; }
   /// Where the ball is that bounds body i; its radius is infinite where that is on no parabola, or
   /// the body has no end.
   [[nodiscard]] const BallFlight& flight(BodyIndex i) const { return flights_[i]; }
@@ -45,15 +48,23 @@ class MotionTable {
    public:
     Moving(const Shape& shape, const Motion& whole) : shape_(shape), motion_(&whole) {}
     Moving(const Shape& shape, const MotionTable& of, BodyIndex i)
-        : shape_(shape), made_(of.of(i)), motion_(&*made_) {}
+        : shape_(shape), made_(std::in_place), motion_(&made_->motion) {
+      of.make(i, made_->motion);
+    }
     Moving(const Moving&) = delete;
     Moving& operator=(const Moving&) = delete;
     operator MovingShape() const { return {shape_, *motion_}; }
     [[nodiscard]] const Motion& motion() const { return *motion_; }
 
    private:
+    /// Not filled with zeros, of which a motion has room for many.
+    struct Made {
+      Made() {}  // NOLINT(modernize-use-equals-default)
+      Motion motion;
+    };
+
     const Shape& shape_;
-    std::optional<Motion> made_;
+    std::optional<Made> made_;
     const Motion* motion_;
   };
   [[nodiscard]] Moving moving(BodyIndex i) const {
@@ -69,7 +80,6 @@ class MotionTable {
     bool is_flight = true;
   };
 
-  [[nodiscard]] bool is_flight(BodyIndex i) const { return forms_[i].is_flight; }
   [[nodiscard]] Quaternion orientation(BodyIndex i) const {
     return forms_[i].upright ? Quaternion(1.0, 0.0, 0.0, 0.0)
                              : model_.body(i).initial.pose.orientation;
@@ -77,6 +87,8 @@ class MotionTable {
   void set_flight(BodyIndex i, const Motion& motion);
   [[nodiscard]] Form form_of(BodyIndex i, const Motion& motion) const;
   void store(BodyIndex i, const Motion& motion);
+  /// Body i has a motion of its own; `out` is as it is made.
+  void make(BodyIndex i, Motion& out) const;
 
   static constexpr std::uint32_t nowhere = ~std::uint32_t{0};
 
