@@ -17,7 +17,7 @@ namespace kairos::experiments {
 namespace {
 
 constexpr std::string_view magic = "kairos checkpoint ";
-constexpr std::string_view format_version = "5";
+constexpr std::string_view format_version = "6";
 constexpr std::size_t checksum_size = 16;
 /// What was set by hand is shorter.
 constexpr std::size_t longest_head = std::size_t{1} << 24;
