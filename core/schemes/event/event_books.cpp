@@ -3,6 +3,7 @@
 #include "core/joint_system.hpp"
 #include "core/schemes/event/event_motions.hpp"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -32,25 +33,35 @@ void EventMotions::book(Flow& flow, Instant t) {
   book_rubs(first, t);
   // At its end a segment is where the stepper left it, which its motion tells up to roundoff.
   const bool whole = !(end_of(first) - t > 0.0) && !support(first);
-  to_.clear();
-  given_.clear();
   for (std::size_t k = 0; k < flow.states.size(); ++k) {
     const BodyIndex i = flow.island.bodies[k];
     now_[i] = whole ? flow.states[k] : at(i, t);
     mark_brought(i, t);
-    to_.push_back(now_[i]);
-    given_.push_back(ties(i).field_force);
   }
+  // Most islands are one body, of which nothing has to be gathered.
+  std::span<const BodyState> to(&now_[first], 1);
+  std::span<const Vector3> given(&ties(first).field_force, 1);
+  if (flow.states.size() > 1) {
+    gather<BodyState>(flow.island, now_, to_);
+    given_.clear();
+    for (const BodyIndex i : flow.island.bodies) {
+      given_.push_back(ties(i).field_force);
+    }
+    to = to_;
+    given = given_;
+  }
+  BodyState of_shared;
+  std::span<const BodyState> booked(flow.booked);
   if (is_shared(flow)) {
-    from_.assign(1, at(first, from));
+    of_shared = at(first, from);
+    booked = {&of_shared, 1};
   }
   const bool turns = ties(first).turns;
   const double roundoff = run_.options.roundoff && !turns ? new_roundoff(flow, t) : 0.0;
   // What the motion of a top is off its closed form is truncation: polynomials are fitted to it.
   const bool exact =
       !turns && (flow.held || (flow.exact && !run_.model.tumbles(run_.model.island_of(first))));
-  Leg leg{flow.island,         is_shared(flow) ? from_ : flow.booked, to_, given_, exact, roundoff,
-          riding_work(flow, t)};
+  Leg leg{flow.island, booked, to, given, exact, roundoff, riding_work(flow, t)};
   if (turns) {
     leg.contact_work = book_turn(first, from, t);
   }
@@ -69,7 +80,7 @@ void EventMotions::book(Flow& flow, Instant t) {
     run_.account.leg(leg, motions, from, duration);
   }
   if (!is_shared(flow)) {
-    flow.booked = to_;
+    std::copy(to.begin(), to.end(), flow.booked.begin());
   }
   booked_until(flow) = t;
 }

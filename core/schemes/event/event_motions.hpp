@@ -242,7 +242,7 @@ class EventMotions {
 #endif
   // Scratch, by place in an island.
   std::vector<Motion> motions_;
-  std::vector<BodyState> from_, to_;
+  std::vector<BodyState> to_;
   std::vector<Vector3> given_;
 };
 

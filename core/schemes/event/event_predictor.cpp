@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace kairos {
 inline namespace core {
@@ -95,35 +96,40 @@ void EventPredictor::predict_all(Instant t) {
 
 /// Asks about i and all of `neighbours_`.
 void EventPredictor::survey(BodyIndex i, Instant known) {
-  balls_.clear();
-  flights_.clear();
+  std::size_t balls = 0;
   const bool flies = motions_.flies(i);
+  if (flies && balls_.size() < neighbours_.size()) {
+    balls_.resize(neighbours_.size());
+    flights_.resize(neighbours_.size());
+    clear_.resize(neighbours_.size());
+  }
   const bool periodic = run_.model.scene().periodic.has_value();
   for (const Neighbour& j : neighbours_) {
     if (!run_.model.interacts(i, j.body)) {
       continue;
     }
-    if (flies && motions_.flies(j.body)) {
-      balls_.push_back(j);
-      flights_.push_back(motions_.flight(j.body));
-      if (periodic) {
-        move_to(j.image, flights_.back());
-      }
-    } else {
+    if (!flies || !motions_.flies(j.body)) {
       predict_near(i, j, known);
+      continue;
     }
+    balls_[balls] = j;
+    flights_[balls] = motions_.flight(j.body);
+    if (periodic) {
+      move_to(j.image, flights_[balls]);
+    }
+    ++balls;
   }
-  meet_balls(i, known);
+  meet_balls(i, balls, known);
 }
 
-/// Those first that i could meet first: of the others it need not know, as it is asked again when
-/// its earliest meeting comes up.
-void EventPredictor::meet_balls(BodyIndex i, Instant known) {
-  clear_.resize(balls_.size());
+/// Of `balls_`, as many as there are now, those first that i could meet first: of the others it
+/// need not know, as it is asked again when its earliest meeting comes up.
+void EventPredictor::meet_balls(BodyIndex i, std::size_t balls, Instant known) {
   const BallFlight& own = motions_.flight(i);
-  run_.detector.clear_times(own, flights_, run_.options.toi_tolerance, clear_);
+  run_.detector.clear_times(own, std::span(flights_).first(balls), run_.options.toi_tolerance,
+                            std::span(clear_).first(balls));
   near_.clear();
-  for (std::size_t k = 0; k < balls_.size(); ++k) {
+  for (std::size_t k = 0; k < balls; ++k) {
     if (clear_[k] < std::numeric_limits<double>::infinity()) {
       near_.push_back({balls_[k], std::max(own.start, flights_[k].start) + clear_[k]});
     }

@@ -79,7 +79,7 @@ class EventPredictor {
   void enter(BodyIndex i, Instant t);
   void predict_near(BodyIndex i, const Neighbour& j, Instant known = before_all);
   void survey(BodyIndex i, Instant known);
-  void meet_balls(BodyIndex i, Instant known);
+  void meet_balls(BodyIndex i, std::size_t balls, Instant known);
   [[nodiscard]] bool keeps_meeting(BodyIndex i, BodyIndex with) const;
   void ask(BodyIndex i, const Neighbour& j, Instant from, Instant known);
   void push(const Question& of, double after, Due due, double patience = 0.0, bool decided = true);
@@ -112,7 +112,7 @@ class EventPredictor {
   std::vector<std::vector<BodyIndex>> partners_;
   std::vector<Instant> since_;         ///< by body: from when on its pairs are asked
   std::vector<Neighbour> neighbours_;  ///< scratch, as what follows
-  std::vector<Neighbour> balls_;
+  std::vector<Neighbour> balls_;       ///< with what follows, as long as it has had to be
   std::vector<BallFlight> flights_;
   std::vector<double> clear_;
   std::vector<Near> near_;
