@@ -104,7 +104,7 @@ TEST_CASE("bounds: keys of 60,000 parts, and brackets in brackets", "[bounds]") 
   CHECK(kairos_program({"run", flat, "--duration", "0.1"}).exit_code == 0);
 }
 
-TEST_CASE("bounds: more threads than memory has room for", "[bounds][toi]") {
+TEST_CASE("bounds: more threads than memory has room for", "[bounds][toi][address-space]") {
   const TemporaryFolder folder;
   const std::string queries = folder.file(
       "queries.csv",
@@ -125,7 +125,7 @@ TEST_CASE("bounds: more threads than memory has room for", "[bounds][toi]") {
 }
 
 TEST_CASE("bounds: more bodies than memory has room for are refused, with the number that fits",
-          "[bounds]") {
+          "[bounds][address-space]") {
   const tests::Surroundings little{.memory = 400 * mebibyte};
   const auto gas = [&](const std::string& balls) {
     return kairos_program({"run", "gas", "--set", "many.ball.count=" + balls, "--set",
@@ -146,7 +146,7 @@ TEST_CASE("bounds: more bodies than memory has room for are refused, with the nu
   CHECK(run.exit_code == 0);  // and so it does
 }
 
-TEST_CASE("bounds: a device without an end is no input", "[bounds]") {
+TEST_CASE("bounds: a device without an end is no input", "[bounds][address-space]") {
   const TemporaryFolder folder;
   const std::string endless = folder.path("endless.csv");
   fs::create_symlink("/dev/zero", endless);
@@ -173,7 +173,7 @@ TEST_CASE("bounds: a device without an end is no input", "[bounds]") {
   check_refused({"run", "bounce", "--resume", folder.path("")}, "no regular file", little);
 }
 
-TEST_CASE("bounds: no half of a file is used where memory ends", "[bounds]") {
+TEST_CASE("bounds: no half of a file is used where memory ends", "[bounds][address-space]") {
   const TemporaryFolder folder;
   // 100 MB of comment, then what would be missing: the second ball.
   std::string text = ball;
@@ -260,7 +260,8 @@ TEST_CASE("bounds: a grid of ten million runs takes no memory to plan", "[bounds
   CHECK(test::allocations() - before < 500'000);
 }
 
-TEST_CASE("bounds: run --save holds what was written on the disk, not in memory", "[bounds]") {
+TEST_CASE("bounds: run --save holds what was written on the disk, not in memory",
+          "[bounds][address-space]") {
   const TemporaryFolder folder;
   const std::string saved = folder.path("saved");
   const Outcome outcome =
@@ -278,7 +279,7 @@ TEST_CASE("bounds: run --save holds what was written on the disk, not in memory"
 }
 
 TEST_CASE("bounds: forged checkpoints with a right checksum end with a code and a reason",
-          "[bounds][checkpoint]") {
+          "[bounds][checkpoint][address-space]") {
   const TemporaryFolder folder;
   Random random(20261122, 28);
   INFO("seed 20261122, stream 28");

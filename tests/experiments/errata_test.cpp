@@ -47,7 +47,7 @@ TEST_CASE("errata: every item names a test that exists", "[errata]") {
   }
 }
 
-TEST_CASE("errata: every measured number agrees with its prediction", "[errata]") {
+TEST_CASE("errata: every measured number agrees with its prediction", "[errata][slow]") {
   for (const Erratum& erratum : errata()) {
     for (const Check& check : erratum.measure(Size::quick)) {
       CAPTURE(erratum.id, check.quantity, check.predicted, check.measured, check.tolerance);
@@ -56,7 +56,7 @@ TEST_CASE("errata: every measured number agrees with its prediction", "[errata]"
   }
 }
 
-TEST_CASE("errata: only what a run could have refuted counts as confirmed", "[errata]") {
+TEST_CASE("errata: only what a run could have refuted counts as confirmed", "[errata][slow]") {
   FigureData data("", Size::quick);
   find_thesis_figure("errata")->measure(data);
   const auto count = [&data](const char* name) {
@@ -78,7 +78,8 @@ TEST_CASE("errata: only what a run could have refuted counts as confirmed", "[er
   CHECK(count("corrected") == static_cast<int>(corrected().size()));
 }
 
-TEST_CASE("errata: contradictions, undecided claims and corrected readings are told", "[errata]") {
+TEST_CASE("errata: contradictions, undecided claims and corrected readings are told",
+          "[errata][slow]") {
   FigureData data("", Size::quick);
   find_thesis_figure("errata")->measure(data);  // throws where a text quotes what there is not
   CHECK(contradictions().size() >= 8);

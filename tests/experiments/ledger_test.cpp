@@ -34,7 +34,7 @@ void check_frames(const std::string& scene, const MethodChoice& method) {
 
 }  // namespace
 
-TEST_CASE("ledger: every frame of every shipped scene is explained", "[ledger]") {
+TEST_CASE("ledger: every frame of every shipped scene is explained", "[ledger][slow]") {
   for (const std::string& scene : shipped_scenes()) {
     check_frames(scene, {});
     check_frames(scene, MethodChoice::thesis());

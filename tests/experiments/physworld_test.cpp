@@ -60,7 +60,7 @@ TEST_CASE("physworld: a light green ball is swallowed by the conveyor, and the s
   CHECK_FALSE(recorder.story().complete);
 }
 
-TEST_CASE("kairos physworld: finds the shipped world again", "[physworld]") {
+TEST_CASE("kairos physworld: finds the shipped world again", "[physworld][slow]") {
   const auto found = kairos_program({"physworld", "--seed", "1"});
   CHECK(found.exit_code == 0);
   CHECK(found.out == read_all(find_scene("physworld")));
