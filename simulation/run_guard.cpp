@@ -58,13 +58,13 @@ void RunGuard::frame(const Frame& frame) {
 }
 
 void RunGuard::event(const Event& event) {
+  if (event.kind == EventKind::contact_begins) {  // contact may turn them from this instant on
+    free_top_[event.a] = free_top_[event.b] = 0;
+  }
   check_spin(event.before_a, event.a, event.time);
   check_spin(event.before_b, event.b, event.time);
   check_finite(event.after_a, event.a, event.time);
   check_finite(event.after_b, event.b, event.time);
-  if (event.kind == EventKind::contact_begins) {  // contact may turn them from now on
-    free_top_[event.a] = free_top_[event.b] = 0;
-  }
   most_energy_[event.a] = most_spin_energy(event.after_a, event.a);
   most_energy_[event.b] = most_spin_energy(event.after_b, event.b);
   ++last_.cost.events;

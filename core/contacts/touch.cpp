@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -239,7 +240,7 @@ std::optional<TouchFeature> under_ball(const Shape& shape, const Vector3& on,
     }
   };
   if (face) {
-    offer(TouchFeature{Kind::plane, on, outward, 0.0});
+    offer(face_feature(shape, on, outward));
   }
   offer(line_feature(shape, on, outward));
   offer(ball_feature(shape, on, outward));
@@ -290,6 +291,31 @@ std::optional<std::vector<TouchFeature>> corners_of(const Shape& shape) {
   return corners;
 }
 
+TouchFeature face_feature(const Shape& shape, const Vector3& x, const Vector3& outward) {
+  TouchFeature face{Kind::plane, x, outward, 0.0};
+  if (std::holds_alternative<Box>(shape)) {
+    Eigen::Index axis = 0;
+    outward.cwiseAbs().maxCoeff(&axis);
+    face.direction = (outward[axis] < 0.0 ? -1.0 : 1.0) * Vector3::Unit(axis);
+  } else if (const auto* hull = std::get_if<Hull>(&shape)) {
+    double nearest = -1.0;
+    for (const Vector3& n : hull->core->normals) {
+      if (n.dot(outward) > nearest) {
+        nearest = n.dot(outward);
+        face.direction = n;
+      }
+    }
+  }
+  if (const auto c = polytope_corners(shape)) {
+    double support = -std::numeric_limits<double>::infinity();
+    for (const Vector3& vertex : c->vertices) {
+      support = std::max(support, face.direction.dot(vertex));
+    }
+    face.at += face.direction * (support + c->rounding - face.direction.dot(x));
+  }
+  return face;
+}
+
 std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point,
                               const Shape& shape_a, const Pose& a, const Shape& shape_b,
                               const Pose& b) {
@@ -323,11 +349,11 @@ std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point
   if (manifold.face_of_b && (corner_a || !(manifold.face_of_a && corner_b))) {
     // Where edges cross on a face the point goes with a, until it is looked at again.
     touch.on_a = corner_a.value_or(TouchFeature{Kind::ball, on_a, Vector3::Zero(), 0.0});
-    touch.on_b = {Kind::plane, on_b, -n_B, 0.0};
+    touch.on_b = face_feature(shape_b, on_b, -n_B);
     return touch;
   }
   if (manifold.face_of_a) {
-    touch.on_a = {Kind::plane, on_a, n_A, 0.0};
+    touch.on_a = face_feature(shape_a, on_a, n_A);
     touch.on_b = corner_b.value_or(TouchFeature{Kind::ball, on_b, Vector3::Zero(), 0.0});
     return touch;
   }

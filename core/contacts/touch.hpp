@@ -59,6 +59,11 @@ struct TouchNow {
 /// that has no corners.
 [[nodiscard]] std::optional<std::vector<TouchFeature>> corners_of(const Shape& shape);
 
+/// The face of a shape that looks `outward`, unit, near a point of the surface (body frame): its
+/// own normal, on the plane that supports the shape, whatever the roundoff of both.
+[[nodiscard]] TouchFeature face_feature(const Shape& shape, const Vector3& x,
+                                        const Vector3& outward);
+
 /// The features of two bodies that touch at a point of their manifold; nullopt where they are none
 /// of those that a `Touch` knows.
 [[nodiscard]] std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point,

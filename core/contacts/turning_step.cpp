@@ -224,7 +224,9 @@ class Step {
         watch.held.push_back(touch);
       }
     }
-    return watch.strike_time(duration);
+    // What is not held, and touches no face, is met by the detector as any other.
+    const bool apart = watch.held.empty() && pair.planes_a.empty() && pair.planes_b.empty();
+    return apart ? duration : watch.strike_time(duration);
   }
 
   [[nodiscard]] Motion motion_of(std::size_t i) const {
@@ -347,6 +349,7 @@ class Step {
     Square powers;
     Eigen::MatrixXd of_body =
         Eigen::MatrixXd::Zero(nodes, static_cast<Eigen::Index>(group_.bodies.size()));
+    Eigen::MatrixXd leaks = of_body;
     Eigen::MatrixXd of_pair =
         Eigen::MatrixXd::Zero(nodes, static_cast<Eigen::Index>(group_.pairs.size()));
     for (int j = 0; j < nodes; ++j) {
@@ -354,7 +357,7 @@ class Step {
       for (int k = 0; k < nodes; ++k) {
         powers(j, k) = k == 0 ? 1.0 : powers(j, k - 1) * u;
       }
-      power_at(u * step_.duration, of_body.row(j), of_pair.row(j));
+      power_at(u * step_.duration, of_body.row(j), of_pair.row(j), leaks.row(j));
     }
     const Eigen::PartialPivLU<Square> interpolate(powers);
     const auto integrated = [&](const Eigen::VectorXd& values) {
@@ -374,19 +377,28 @@ class Step {
     for (Eigen::Index p = 0; p < of_pair.cols(); ++p) {
       step_.rubbed.push_back(integrated(of_pair.col(p)));
     }
-    step_.leaked.resize(nodes);
-    for (int k = 0; k <= nodes; ++k) {
-      for (const auto& work : step_.worked) {
-        step_.leaked[k].x() += work[k].x();
-      }
-      for (const auto& work : step_.rubbed) {
-        step_.leaked[k].x() -= work[k].x();
+    for (Eigen::Index i = 0; i < of_body.cols(); ++i) {
+      step_.leaked.push_back(integrated(leaks.col(i)));
+    }
+    if (free_.size() == 1) {
+      leak_of_one();
+    }
+  }
+
+  /// Of one free body: the difference of what is told, so that it closes the ledger to the last
+  /// bit.
+  void leak_of_one() {
+    Polynomial<3>& leaked = step_.leaked[free_[0]];
+    leaked = step_.worked[free_[0]];
+    for (const auto& work : step_.rubbed) {
+      for (int k = 0; k <= work.degree(); ++k) {
+        leaked[k].x() -= work[k].x();
       }
     }
   }
 
   template <typename Bodies, typename Pairs>
-  void power_at(double s, Bodies of_body, Pairs of_pair) const {
+  void power_at(double s, Bodies of_body, Pairs of_pair, Bodies leaks) const {
     const TurningState state = at_states(group_, free_states(s));
     TurningForces forces(state);
     const auto choices = directed(mode_, forces.now(), slow_);
@@ -398,13 +410,19 @@ class Step {
         const BodyState& at = state.states[i];
         return found.force[k].dot(at.twist.at(point, at.pose.position));
       };
-      of_body[static_cast<Eigen::Index>(touch.a)] -= power(touch.a, now.point_a);
-      of_body[static_cast<Eigen::Index>(touch.b)] += power(touch.b, now.point_b);
+      const double on_a = -power(touch.a, now.point_a);
+      const double on_b = power(touch.b, now.point_b);
+      of_body[static_cast<Eigen::Index>(touch.a)] += on_a;
+      of_body[static_cast<Eigen::Index>(touch.b)] += on_b;
+      double rubbed = 0.0;
       const bool slides = choices[k].does == Does::slides || choices[k].does == Does::begins;
       if (slides && !choices[k].direction.isZero(0.0)) {
         const Vector3 along = found.force[k] - now.normal * now.normal.dot(found.force[k]);
-        of_pair[static_cast<Eigen::Index>(touch.pair)] += std::min(along.dot(now.velocity), 0.0);
+        rubbed = std::min(along.dot(now.velocity), 0.0);
       }
+      of_pair[static_cast<Eigen::Index>(touch.pair)] += rubbed;
+      const std::size_t first = group_.inertia[touch.a].mass > 0.0 ? touch.a : touch.b;
+      leaks[static_cast<Eigen::Index>(first)] += on_a + on_b - rubbed;
     }
   }
 

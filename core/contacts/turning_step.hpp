@@ -56,7 +56,9 @@ struct TurningStep {
   std::vector<BodyState> states;      ///< by place, at the end
   std::vector<Polynomial<3>> worked;  ///< by place: x, work of contact forces on the body, J
   std::vector<Polynomial<3>> rubbed;  ///< by pair: x, work of friction that slides, J, <= 0
-  Polynomial<3> leaked;               ///< x: what they gave that is no friction: truncation, J
+  /// By place: x, what the contact forces of the touches of which it is the first free body gave
+  /// that is no friction: truncation, J.
+  std::vector<Polynomial<3>> leaked;
   std::int64_t evaluations = 0;
 };
 

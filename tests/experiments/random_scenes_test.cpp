@@ -285,12 +285,12 @@ TEST_CASE("random scenes that once broke a promise", "[random]") {
       {seed, 1450, Fate::stopped, "30,000 impacts in a closing gap left energy unexplained"},
       {1999, 3693, Fate::right, "potentials that cancel left their rounding"},
       {1999, 64849, Fate::right, "potentials that cancel left their rounding"},
-      {1999, 4471, Fate::stopped, "a ball sank through a box that lay on the floor"},
-      {1999, 60224, Fate::stopped, "a ball sank through a ball that lay on the floor"},
-      {1999, 71544, Fate::stopped, "asked the same question for ever; hops on a ball on the floor"},
-      {1999, 84136, Fate::stopped, "a ball sank through a ball that lay on the floor"},
-      {1999, 87189, Fate::stopped, "a ball sank through a box; now one is squashed on the floor"},
-      {1999, 91884, Fate::stopped, "a ball sank through a ball that lay on the floor"},
+      {1999, 4471, Fate::right, "a ball sank through a box that lay on the floor"},
+      {1999, 60224, Fate::right, "a ball sank through a ball that lay on the floor"},
+      {1999, 71544, Fate::right, "asked the same question for ever; hops on a ball on the floor"},
+      {1999, 84136, Fate::right, "a ball sank through a ball that lay on the floor"},
+      {1999, 87189, Fate::right, "a ball sank through a box; now one is squashed on the floor"},
+      {1999, 91884, Fate::right, "a ball sank through a ball that lay on the floor"},
       {4242, 15588, Fate::right, "what an impact turned into spin was no flow"},
       {1999, 70032, Fate::right, "a ball left a box at its edge and was on it, for ever"},
       {1999, 130453, Fate::right, "a ball left a box at its edge and was on it, for ever"},
@@ -312,12 +312,24 @@ TEST_CASE("random scenes of bodies in touch that once broke a promise", "[random
       {16443, Fate::stopped, "a ball in contact hovered beside the other"},
       {46413, Fate::right, "a part of a slow way along an incline was taken for roundoff"},
       {81822, Fate::right, "a part of a slow way along an incline was taken for roundoff"},
-      {12184, Fate::stopped, "rounding of what others handed on was taken for a broken law"},
+      {12184, Fate::right, "rounding of what others handed on was taken for a broken law"},
   };
   for (const Case& c : cases) {
     const Trial trial = try_scene(touching_scene(21, c.index));
     CAPTURE(c.index, c.what, trial.reason);
     CHECK(trial.fate == c.fate);
+  }
+}
+
+TEST_CASE("two bodies that turn in touch: scenes that once broke a promise", "[random]") {
+  // Balls sank into boxes whose motion had ended, boxes into boxes whose faces were 1e-7 rad off
+  // the normal between them, and what contact forces leaked was booked for a body that they had
+  // left.
+  for (const std::uint64_t index :
+       {37, 840, 848, 1401, 2121, 2161, 2249, 2284, 3920, 4386, 4514, 4708, 5039, 5250, 5521}) {
+    const Trial trial = try_scene(touching_scene(41, index));
+    CAPTURE(index, to_string(trial.fate), trial.reason);
+    CHECK_FALSE(trial.failed());
   }
 }
 

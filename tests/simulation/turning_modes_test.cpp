@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <vector>
 
 using namespace kairos;
@@ -215,6 +216,32 @@ TEST_CASE("turning: a ball that rolls along the edge of a box leaves it at the c
   REQUIRE(left < Instant{0.6, 0.0});
   // Past the corner at z = 1 nothing is left to roll on.
   CHECK(sim.result.state[1].pose.position.y() < 0.0);
+}
+
+TEST_CASE("turning: a ball that lands beside the middle of another rolls off it", "[turning]") {
+  for (const double e : {0.0, 0.3}) {
+    for (const char* const mu : {"0", "0.3"}) {
+      CAPTURE(e, mu);
+      std::string text = head(3.0, mu);
+      for (const auto& [name, x, y] : {std::tuple{"a", 0.0, 0.5}, std::tuple{"b", 0.1, 2.5}}) {
+        text += fmt::format(
+            "[[body]]\nname = \"{}\"\nentity = \"body\"\nshape = \"sphere\"\nradius = 0.5\n"
+            "mass = 1.0\nrestitution = {}\nposition = [{}, {}, 0]\n",
+            name, e, x, y);
+      }
+      const auto sim = run(text);
+      check_whole(sim, text);
+      // Both on the floor, apart, the upper one to the right; momentum along it is that of
+      // friction.
+      const BodyState& a = sim.result.state[1];
+      const BodyState& b = sim.result.state[2];
+      CHECK(std::abs(a.pose.position.y() - 0.5) <= 1e-9);
+      CHECK(std::abs(b.pose.position.y() - 0.5) <= 1e-9);
+      CHECK(b.pose.position.x() - a.pose.position.x() > 1.0);
+      const double momentum = a.twist.linear.x() + b.twist.linear.x();
+      CHECK((std::string(mu) != "0" || std::abs(momentum) <= 1e-9));
+    }
+  }
 }
 
 TEST_CASE("turning: a ball that strikes a resting box off its centre sets it rocking",

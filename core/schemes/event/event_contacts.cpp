@@ -209,7 +209,7 @@ bool EventContacts::lands(BodyIndex a, BodyIndex b, const Contact& contact, Inst
     if (!run_.model.is_free(ball) || run_.model.is_free(surface)) {
       continue;
     }
-    if (run_.model.friction(ball, surface) > 0.0) {
+    if (run_.model.friction(ball, surface) > 0.0 || modes_.holds(ball)) {
       continue;  // a mode of its own
     }
     const auto moving = motions_.moving(surface);

@@ -15,8 +15,9 @@ inline namespace core {
 /// What a person can do about bodies that stay in touch: the end of a stop's reason.
 inline constexpr std::string_view part_them =
     "contact that lasts is kept where loads are constant and nothing turns, of one body that does "
-    "not turn on a face that is driven, or one that turns on what is fixed; allowed: bodies that "
-    "start apart, a restitution of 1, another scheme, or a run that ends before (--duration)";
+    "not turn on a face that is driven, or of one or two that turn while they touch; allowed: "
+    "bodies "
+    "that start apart, a restitution of 1, another scheme, or a run that ends before (--duration)";
 
 /// What the parts of an event-driven run share besides what every run has: what is due, how far
 /// predictions go, and how much work is left.

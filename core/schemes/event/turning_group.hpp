@@ -14,14 +14,10 @@ struct EventModes::Turning {
 
   [[nodiscard]] EventMotions::Turn turn_of(std::size_t place) const {
     EventMotions::Turn turn{step.motions[place], step.states[place], step.worked[place]};
-    const auto& inertia = group.inertia;
-    const auto first = std::find_if(inertia.begin(), inertia.end(),
-                                    [](const BodyInertia& i) { return i.mass > 0.0; });
-    if (static_cast<std::size_t>(first - inertia.begin()) == place) {
-      turn.worked.resize(std::max(turn.worked.degree(), step.leaked.degree()));
-      for (int k = 0; k <= step.leaked.degree(); ++k) {
-        turn.worked[k].y() = step.leaked[k].x();
-      }
+    const Polynomial<3>& leaked = step.leaked[place];
+    turn.worked.resize(std::max(turn.worked.degree(), leaked.degree()));
+    for (int k = 0; k <= leaked.degree(); ++k) {
+      turn.worked[k].y() = leaked[k].x();
     }
     return turn;
   }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -25,7 +26,7 @@ constexpr int most_short_steps = 500;
 /// A body that turns has so many steps in a frame at most.
 constexpr int most_steps = 1000;
 /// So many free bodies of a group may turn: forces of more are found too slowly.
-constexpr std::ptrdiff_t most_bodies = 1;
+constexpr std::ptrdiff_t most_bodies = 2;
 
 }  // namespace
 
@@ -131,7 +132,7 @@ std::string EventModes::why_not_turn(const Gathered& found, Instant t) const {
   const auto free = std::count_if(found.bodies.begin(), found.bodies.end(),
                                   [&](BodyIndex i) { return run_.model.is_free(i); });
   if (free > most_bodies) {
-    return "bodies that touch each other turn";
+    return fmt::format("more than {} bodies that touch each other turn", most_bodies);
   }
   const double frame = std::floor(t.seconds / run_.mean_frame);
   for (const BodyIndex i : found.bodies) {
@@ -230,12 +231,12 @@ std::string EventModes::add_touches(Gathered& found, Turning& turning) const {
     const Vector3& middle = m.points[0].position;
     const Vector3 half = 0.5 * m.points[0].gap * m.normal;
     if (m.face_of_a) {
-      pair.planes_a.push_back({TouchFeature::Kind::plane, at_a.to_body(middle - half),
-                               at_a.orientation.conjugate() * m.normal, 0.0});
+      pair.planes_a.push_back(face_feature(run_.model.shape(a), at_a.to_body(middle - half),
+                                           at_a.orientation.conjugate() * m.normal));
     }
     if (m.face_of_b) {
-      pair.planes_b.push_back({TouchFeature::Kind::plane, at_b.to_body(middle + half),
-                               at_b.orientation.conjugate() * -m.normal, 0.0});
+      pair.planes_b.push_back(face_feature(run_.model.shape(b), at_b.to_body(middle + half),
+                                           at_b.orientation.conjugate() * -m.normal));
     }
     for (std::size_t k = 0; k < m.size; ++k) {
       auto touch = touch_at(m, k, run_.model.shape(a), at_a, run_.model.shape(b), at_b);
@@ -408,11 +409,32 @@ void EventModes::carry_on(const Gathered& found, const Turning& turning, Instant
     return;
   }
   const bool strikes = turning.step.end == TurningEnd::strike;
-  const auto& [a, b] = found.pairs[strikes ? turning.step.pair : 0];
   if (strikes) {
+    const auto& [a, b] = found.pairs[turning.step.pair];
     run_.agenda.push(end, Due::impact, a, b, 0.0, true);
-  } else {
-    run_.agenda.push(end, Due::mode_ends, a, b);
+  }
+  end_together(found, mode, end, strikes ? &found.pairs[turning.step.pair] : nullptr);
+}
+
+/// What hangs together is looked at again at `end`, but for those that strike then.
+void EventModes::end_together(const Gathered& found, const FlatMode& mode, Instant end,
+                              const BodyPair* strikes) {
+  std::vector<BodyIndex> told;
+  const auto tell = [&](BodyIndex i, BodyIndex j) {
+    for (const BodyIndex k : group(std::array{i, j})) {
+      told.push_back(k);
+    }
+  };
+  if (strikes != nullptr) {
+    tell(strikes->first, strikes->second);
+  }
+  for (std::size_t p = 0; p < found.pairs.size(); ++p) {
+    const auto& [a, b] = found.pairs[p];
+    const BodyIndex free = run_.model.is_free(a) ? a : b;
+    if (mode.kept[p] != 0 && std::find(told.begin(), told.end(), free) == told.end()) {
+      run_.agenda.push(end, Due::mode_ends, a, b);
+      tell(a, b);
+    }
   }
 }
 
