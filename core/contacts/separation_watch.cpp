@@ -131,22 +131,36 @@ class Watcher {
     if (corners.empty()) {
       return;  // a half-space: no corner tells on which side it is
     }
-    c.bend = bend(carrier, other, arm, reach(plane));
+    const Motion& motion = of_a ? watch_.motion_a : watch_.motion_b;
+    c.bend = bend(carrier, other, motion.orientation(0.0) * plane.direction, of_a, arm);
     candidates_.push_back(std::move(c));
   }
 
-  /// Of n.(x - q), n and q of `carrier`.
-  [[nodiscard]] double bend(const Bounds& carrier, const Bounds& other, double arm,
-                            double plane_arm) const {
-    const Vector3 between = watch_.motion_a.position[0] - watch_.motion_b.position[0];
-    const double way = duration_ * (carrier.speed + other.speed);
+  /// Of n.(x - q), n and q of `carrier`: n.(x_o - x_c) and what turns. What both do together is no
+  /// part of it.
+  [[nodiscard]] double bend(const Bounds& carrier, const Bounds& other, const Vector3& n, bool of_a,
+                            double arm) const {
+    const Polynomial<3>& x_c = (of_a ? watch_.motion_a : watch_.motion_b).position;
+    const Polynomial<3>& x_o = (of_a ? watch_.motion_b : watch_.motion_a).position;
+    double along = 0.0;         // of the second derivative, the part along n where it starts
+    double acceleration = 0.0;  // all of it
+    double speed = 0.0;
+    double distance = 0.0;
+    for (int k = std::max(x_c.degree(), x_o.degree()); k >= 0; --k) {
+      Vector3 c = Vector3::Zero();
+      c += k <= x_o.degree() ? Vector3(x_o[k]) : Vector3(Vector3::Zero());
+      c -= k <= x_c.degree() ? Vector3(x_c[k]) : Vector3(Vector3::Zero());
+      distance = distance * duration_ + c.norm();
+      speed = k >= 1 ? speed * duration_ + k * c.norm() : speed;
+      acceleration = k >= 2 ? acceleration * duration_ + k * (k - 1) * c.norm() : acceleration;
+      along = k >= 2 ? along * duration_ + k * (k - 1) * std::abs(n.dot(c)) : along;
+    }
     const double turning = carrier.turning;
-    const double speed = carrier.speed + other.speed + arm * other.turning + plane_arm * turning;
-    return other.bend(arm) +
-           (turning > 0.0 || carrier.speed > 0.0 ? carrier.bend(plane_arm) : 0.0) +
-           2.0 * turning * speed +
-           (carrier.spin + turning * turning) *
-               (turning > 0.0 ? between.norm() + way + arm + plane_arm : 0.0);
+    const double turned = std::min(turning * duration_, 2.0);  // n, since the start
+    const double of_arm = arm * (other.spin + other.turning * other.turning);
+    return std::min(along + turned * acceleration, acceleration) + of_arm +
+           2.0 * turning * (speed + arm * other.turning) +
+           (carrier.spin + turning * turning) * (distance + arm);
   }
 
   void add_touch(const Touch& touch) {
@@ -166,18 +180,25 @@ class Watcher {
         c.corners_b.push_back(corner);
       }
     }
-    // The normal of two lines turns faster than they do by 1 / sin of their angle.
-    double sine = 1.0;
-    if (touch.on_a.kind == Kind::line && touch.on_b.kind == Kind::line) {
-      sine = (watch_.motion_a.orientation(0.0) * touch.on_a.direction)
-                 .cross(watch_.motion_b.orientation(0.0) * touch.on_b.direction)
-                 .norm();
-    }
-    const double turning = 2.0 * (a_.turning + b_.turning) / sine;
+    const double speeds = a_.speed + b_.speed + arm_a * a_.turning + arm_b * b_.turning;
+    const double bends = a_.bend(arm_a) + b_.bend(arm_b);
     const double size = 2.0 * (arm_a + arm_b);
-    c.bend = a_.bend(arm_a) + b_.bend(arm_b) +
-             2.0 * turning * (a_.speed + b_.speed + arm_a * a_.turning + arm_b * b_.turning) +
-             size * (2.0 * (a_.spin + b_.spin) / sine + 2.0 * turning * turning);
+    double turning = 2.0 * (a_.turning + b_.turning);
+    double spin = 2.0 * (a_.spin + b_.spin);
+    if (touch.on_a.kind == Kind::line && touch.on_b.kind == Kind::line) {
+      // The normal of two lines turns faster than they do by 1 / sin of their angle.
+      const double sine = (watch_.motion_a.orientation(0.0) * touch.on_a.direction)
+                              .cross(watch_.motion_b.orientation(0.0) * touch.on_b.direction)
+                              .norm();
+      turning /= sine;
+      spin /= sine;
+    } else {
+      // That of a ball goes round with its middle.
+      const double round = 0.5 * (touch.on_a.radius + touch.on_b.radius);
+      turning += speeds / round;
+      spin += bends / round + 3.0 * (speeds / round) * (speeds / round);
+    }
+    c.bend = bends + 2.0 * turning * speeds + size * (spin + 2.0 * turning * turning);
     candidates_.push_back(std::move(c));
   }
 
