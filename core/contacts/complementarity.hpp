@@ -23,8 +23,8 @@ struct Complementarity {
                                                     const Eigen::VectorXd& q,
                                                     double tolerance = 1e-11);
 
-/// Whether x is a solution. Rows may be off by `tolerance` times the largest |q| and by the roundoff
-/// of their own terms, the signs of x by `tolerance` times the largest |x|.
+/// Whether x is a solution. Rows may be off by `tolerance` times the largest |q| and by the
+/// roundoff of their own terms, the signs of x by `tolerance` times the largest |x|.
 [[nodiscard]] bool complementary(const Eigen::MatrixXd& W, const Eigen::VectorXd& q,
                                  const Eigen::VectorXd& x, double tolerance);
 

@@ -16,8 +16,8 @@ inline namespace core {
 inline constexpr std::string_view part_them =
     "contact that lasts is kept where loads are constant and nothing turns, of one body that does "
     "not turn on a face that is driven, or of one or two that turn while they touch; allowed: "
-    "bodies "
-    "that start apart, a restitution of 1, another scheme, or a run that ends before (--duration)";
+    "bodies that start apart, a restitution of 1, another scheme, or a run that ends before "
+    "(--duration)";
 
 /// What the parts of an event-driven run share besides what every run has: what is due, how far
 /// predictions go, and how much work is left.
