@@ -1,8 +1,8 @@
 #include "core/schemes/event/motion_table.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace kairos {
@@ -13,9 +13,8 @@ namespace {
 constexpr std::size_t few = 128;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-bool same_bits(double x, double y) {
-  return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
-}
+/// Tells -0 from 0. std::bit_cast is not in the oldest libc++ that is built with.
+bool same_bits(double x, double y) { return std::memcmp(&x, &y, sizeof x) == 0; }
 bool same_bits(const Vector3& x, const Vector3& y) {
   return same_bits(x[0], y[0]) && same_bits(x[1], y[1]) && same_bits(x[2], y[2]);
 }
