@@ -283,14 +283,14 @@ test("nothing blocks the page for long while a long run is computed", async () =
   });
   await page.fill("#option-duration", "10000");
   await page.keyboard.press("Enter");
-  await page.waitForFunction(() => window.studio.client.busy() > 250);
+  await page.waitForFunction(() => window.studio.client.busy() > 2000);
   await page.evaluate(() => { window.during = window.longest; });
   await page.fill("#option-duration", "1");
   await page.keyboard.press("Enter");
   await page.waitForFunction(() => window.studio.viewer.player.end === 1);
   const during = await page.evaluate(() => window.during);
   console.log(`# longest pause of the page while the worker computes: ${during.toFixed(0)} ms`);
-  // 50 ms is the aim on a machine of its own; software rendering and other work on two cores take theirs.
+  // 50 ms is the aim on a machine of its own. A page that waited for its worker would pause as long as that computes.
   assert.ok(during < 1000);
   await context.close();
 });
