@@ -134,11 +134,12 @@ const std::vector<TrianglePair>& MeshQueries::touching_pairs(const PosedMesh& a,
   return touching_;
 }
 
-void MeshQueries::measure(const MeshPair& pair, TrianglePair triangles, MeshDistance& best) {
+void MeshQueries::measure(const MeshPair& pair, TrianglePair triangles, double enough,
+                          MeshDistance& best) {
   const Corners a = pair.corners_a(triangles.a);
   const Corners b = pair.corners_b(triangles.b);
   const double quick = quick_triangle_distance(a, b, pair.error());
-  if (quick >= best.upper) {
+  if (quick >= best.upper || quick > enough) {
     best.lower = std::min(best.lower, quick);
     return;
   }
@@ -159,13 +160,15 @@ void MeshQueries::measure(const MeshPair& pair, TrianglePair triangles, MeshDist
   }
 }
 
-void MeshQueries::open(const MeshPair& pair, const Key& key, double enough, MeshDistance& best) {
+void MeshQueries::open(const MeshPair& pair, const Key& key, double at_once, double enough,
+                       MeshDistance& best) {
   const bool first = opens_a(pair, key.node.a, key.node.b);
+  const std::size_t before = stack_of_keys_.size();
   for (const ObbChild child :
        first ? node_a(pair, key.node.a).children : node_b(pair, key.node.b).children) {
     const Node node = first ? Node{child, key.node.b} : Node{key.node.a, child};
     if (node.a.is_triangle() && node.b.is_triangle()) {
-      measure(pair, {node.a.index(), node.b.index()}, best);
+      measure(pair, {node.a.index(), node.b.index()}, enough, best);
       if (best.verdict == MeshVerdict::touching) {
         return;
       }
@@ -174,44 +177,60 @@ void MeshQueries::open(const MeshPair& pair, const Key& key, double enough, Mesh
     ++best.cost.box_tests;
     const double lower =
         std::max(key.lower, proven_distance(pair, node.a, node.b, std::min(enough, best.upper)));
-    if (lower >= best.upper) {
+    if (lower >= best.upper || lower > enough) {
       best.lower = std::min(best.lower, lower);
-      continue;
+    } else if (lower <= at_once) {
+      stack_of_keys_.push_back({lower, node});
+    } else {
+      heap_.push_back({lower, node});
+      std::push_heap(heap_.begin(), heap_.end(), later);
     }
-    heap_.push_back({lower, node});
-    std::push_heap(heap_.begin(), heap_.end(), later);
+  }
+  if (stack_of_keys_.size() == before + 2 &&
+      stack_of_keys_[before].lower < stack_of_keys_[before + 1].lower) {
+    std::swap(stack_of_keys_[before], stack_of_keys_[before + 1]);  // the nearer one comes first
   }
 }
 
+/// What no proof tells to be farther apart than 0, or than what is asked, must be opened whatever
+/// else is: that is done depth first, so that what touches is soon found. The rest, best first.
 MeshDistance MeshQueries::search(const MeshPair& pair, double tolerance) {
   constexpr double accuracy = 1e-12;  // of the distance: what is not worth another test
   const double roundoff = 64.0 * pair.error();
   const bool asked_within = tolerance >= 0.0;
+  const double at_once = asked_within ? tolerance : 0.0;
+  const double enough = asked_within ? tolerance : infinity;
   MeshDistance best;
   best.lower = best.upper = infinity;
   const Node roots{pair.a().tree().root, pair.b().tree().root};
   heap_.clear();
+  stack_of_keys_.clear();
   if (roots.a.is_triangle() && roots.b.is_triangle()) {
-    measure(pair, {roots.a.index(), roots.b.index()}, best);
+    measure(pair, {roots.a.index(), roots.b.index()}, enough, best);
   } else {
-    heap_.push_back({0.0, roots});
+    stack_of_keys_.push_back({0.0, roots});
   }
-  while (!heap_.empty() && best.verdict != MeshVerdict::touching && best.upper > tolerance) {
+  while (best.verdict != MeshVerdict::touching && best.upper > tolerance) {
+    if (!stack_of_keys_.empty()) {
+      const Key key = stack_of_keys_.back();
+      stack_of_keys_.pop_back();
+      open(pair, key, at_once, enough, best);
+      continue;
+    }
+    // What is left is farther than this: near enough to the bounds.
+    if (heap_.empty() || heap_.front().lower >= (1.0 - accuracy) * best.upper - roundoff) {
+      break;
+    }
     std::pop_heap(heap_.begin(), heap_.end(), later);
     const Key key = heap_.back();
     heap_.pop_back();
-    // What is left is farther than this: near enough to the bounds, or beyond what is asked. What
-    // may touch is never left.
-    const bool beyond = asked_within ? key.lower > tolerance
-                                     : key.lower >= (1.0 - accuracy) * best.upper - roundoff;
-    if (beyond && key.lower > 0.0) {
-      best.lower = std::min(best.lower, key.lower);
-      return best;
-    }
-    open(pair, key, asked_within ? tolerance : infinity, best);
+    open(pair, key, at_once, enough, best);
   }
-  if (!heap_.empty() && best.verdict != MeshVerdict::touching) {
-    best.lower = std::min(best.lower, heap_.front().lower);
+  if (best.verdict != MeshVerdict::touching) {
+    for (const Key& key : stack_of_keys_) {
+      best.lower = std::min(best.lower, key.lower);
+    }
+    best.lower = std::min(best.lower, heap_.empty() ? infinity : heap_.front().lower);
   }
   return best;
 }

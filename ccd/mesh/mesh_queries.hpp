@@ -102,13 +102,17 @@ class MeshQueries {
   /// until it says true.
   template <typename Leaf>
   void descend(const MeshPair& pair, double tolerance, MeshCost& cost, const Leaf& leaf);
-  /// Pops the pair of boxes with the least proven distance first. Ends early once the distance is
-  /// proven to be at most, or to be more than `tolerance`; negative: never, it is asked for itself.
+  /// Ends early once the distance is proven to be at most, or to be more than `tolerance`;
+  /// negative: never, it is asked for itself.
   MeshDistance search(const MeshPair& pair, double tolerance);
-  void open(const MeshPair& pair, const Key& key, double enough, MeshDistance& best);
-  void measure(const MeshPair& pair, TrianglePair triangles, MeshDistance& best);
+  /// Looks at the two children: those not proven to be farther apart than `at_once` go on the
+  /// stack, what is farther than `enough` is left.
+  void open(const MeshPair& pair, const Key& key, double at_once, double enough,
+            MeshDistance& best);
+  void measure(const MeshPair& pair, TrianglePair triangles, double enough, MeshDistance& best);
 
   std::vector<Node> stack_;
+  std::vector<Key> stack_of_keys_;
   std::vector<Key> heap_;
   std::vector<TrianglePair> touching_;
   std::vector<NearPair> near_;
