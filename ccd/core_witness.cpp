@@ -129,6 +129,12 @@ void keep_polished(const CorePair& pair, const GjkResult& found, CoreWitness& wi
   }
 }
 
+/// A cylinder or a cone: beside one GJK's points are never as near as the cores are, whatever it
+/// starts from, and its direction is as good as it gets.
+bool is_curved(const ConvexCore& core) {
+  return core.kind() == ConvexCore::Kind::cylinder || core.kind() == ConvexCore::Kind::cone;
+}
+
 /// Corner to corner between slivers GJK ends where rounding lets nothing improve, in a direction
 /// that is off by more than the gap: other starts end elsewhere.
 void start_elsewhere(const CorePair& pair, const GjkResult& found, CoreWitness& witness) {
@@ -190,7 +196,8 @@ CoreWitness core_witness(const CorePair& pair, double reach, double precision, d
   if (!found.inside && (pair.a.width() == 0.0 || pair.b.width() == 0.0)) {
     keep_polished(pair, found, witness);
   }
-  if (!found.inside && found.upper > 2.0 * error) {
+  const bool angular = !is_curved(pair.a) && !is_curved(pair.b);
+  if (!found.inside && angular && found.upper > 2.0 * error) {
     start_elsewhere(pair, found, witness);
   }
   if (witness.depth == 0.0 && witness.separation < -2.0 * error) {
