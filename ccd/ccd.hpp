@@ -1,7 +1,8 @@
 #pragma once
 
 // The room `ccd`, as a consumer sees it: detectors, swept boxes, broad phases, questions about one
-// instant, vertices and edges on straight lines. `#include <kairos/ccd.hpp>`; see ccd/README.md.
+// instant, vertices and edges on straight lines, meshes that deform. `#include <kairos/ccd.hpp>`;
+// see ccd/README.md.
 #include "ccd/all_pairs.hpp"
 #include "ccd/bisection.hpp"
 #include "ccd/box_batch.hpp"
@@ -9,6 +10,8 @@
 #include "ccd/collision_world.hpp"
 #include "ccd/conservative_advancement.hpp"
 #include "ccd/contact_patch.hpp"
+#include "ccd/deforming/deforming_mesh.hpp"
+#include "ccd/deforming/deforming_pair.hpp"
 #include "ccd/dynamic_tree.hpp"
 #include "ccd/linear/linear_impact.hpp"
 #include "ccd/mesh/mesh_queries.hpp"

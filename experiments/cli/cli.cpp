@@ -67,6 +67,7 @@ void add_commands(CLI::App& app) {
   add_mesh_command(program);
   add_collide_command(program);
   add_distance_command(program);
+  add_deform_command(program);
   add_sweep_command(program);
   add_experiment_command(program);
   add_reproduce_command(program);

@@ -15,6 +15,7 @@ void add_vfee_command(Command& app);
 void add_collide_command(Command& app);
 void add_mesh_command(Command& app);
 void add_distance_command(Command& app);
+void add_deform_command(Command& app);
 void add_sweep_command(Command& app);
 void add_experiment_command(Command& app);
 void add_reproduce_command(Command& app);
