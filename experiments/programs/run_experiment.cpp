@@ -5,6 +5,7 @@
 #include "experiments/ablation/ablation_experiment.hpp"
 #include "experiments/extremes/extremes_experiment.hpp"
 #include "experiments/gas/gas_experiment.hpp"
+#include "experiments/queries/queries_experiment.hpp"
 #include "experiments/realtime/realtime_experiment.hpp"
 #include "experiments/references/references_experiment.hpp"
 #include "experiments/tradeoff/tradeoff_experiment.hpp"
@@ -18,12 +19,13 @@
 namespace kairos::experiments {
 namespace {
 
-constexpr std::array<ExperimentProgram, 6> programs{{{"tradeoff", run_tradeoff},
+constexpr std::array<ExperimentProgram, 7> programs{{{"tradeoff", run_tradeoff},
                                                      {"extremes", run_extremes},
                                                      {"real-time", run_realtime},
                                                      {"ablation", run_ablation},
                                                      {"contact-truths", run_references},
-                                                     {"gas", run_gas}}};
+                                                     {"gas", run_gas},
+                                                     {"queries", run_queries}}};
 
 const ExperimentProgram& program_of(const ExperimentSpec& spec) {
   std::vector<std::string_view> names;

@@ -32,7 +32,9 @@ std::string data_cell(const std::string& cell, const std::string& label, const c
   if (cell.empty()) {
     return fmt::format("<td class=\"zero{}\"{}>–</td>", more, name);
   }
-  const char* look = !parse_number(cell) ? "text" : cell == "0" ? "zero" : "";
+  constexpr std::size_t long_text = 32;  // characters; more than that is set in several lines
+  const char* text = cell.size() > long_text ? "text long" : "text";
+  const char* look = !parse_number(cell) ? text : cell == "0" ? "zero" : "";
   return fmt::format("<td class=\"{}{}\"{}>{}</td>", look, more, name, readable(cell));
 }
 
