@@ -90,7 +90,8 @@ void ContactSystem::project(std::vector<Twist>& v) const {
 
 void ContactSystem::undo_where_faster(const std::vector<Twist>& before,
                                       std::vector<Twist>& v) const {
-  constexpr double along = 64.0 * std::numeric_limits<double>::epsilon();  // of a speed: less off a contact is along it
+  constexpr double along =
+      64.0 * std::numeric_limits<double>::epsilon();  // of a speed: less off a contact is along it
   const auto off = [](const ContactRow& row, const std::vector<Twist>& u) {
     return std::abs(row.direction.dot(u[row.b].linear - u[row.a].linear));
   };
