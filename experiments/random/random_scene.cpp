@@ -186,6 +186,14 @@ std::string RandomScene::toml() const {
   std::string out = fmt::format(
       "name = \"{}\"\nsummary = \"a random scene\"\nduration = {}\nframe = {}\nG = {}\n", name,
       duration, frame, G);
+  std::string axes;
+  for (std::size_t k = 0; k < 3; ++k) {
+    axes += repeated[k] ? fmt::format("{}\"{}\"", axes.empty() ? "" : ", ", "xyz"[k]) : "";
+  }
+  if (!axes.empty()) {
+    out += fmt::format("\n[periodic]\nmin = {}\nmax = {}\naxes = [{}]\n", vector(low), vector(high),
+                       axes);
+  }
   for (const RandomBody& b : bodies) {
     write_body(out, b);
   }

@@ -2,6 +2,7 @@
 
 #include "core/pose.hpp"
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -50,6 +51,9 @@ struct RandomScene {
   double duration = 1.0;
   double frame = 0.1;
   double G = 0.0;
+  std::array<bool, 3> repeated{};  ///< whether the box from `low` to `high` is, along x, y, z
+  Vector3 low = Vector3::Zero();
+  Vector3 high = Vector3::Zero();
   std::vector<RandomBody> bodies;
 
   /// As a scene file; digits that read back the same.
@@ -68,5 +72,9 @@ struct RandomScene {
 /// other with little restitution, balls between walls that close. Moved, turned and scaled at
 /// random; solids touch, but do not overlap beyond roundoff.
 [[nodiscard]] RandomScene touching_scene(std::uint64_t seed, std::uint64_t index);
+
+/// Balls, up to some two hundred, of one size or of several, light and heavy, thin or dense; in a
+/// room, in a box that is repeated along some axes, with gravity or without, with or without loss.
+[[nodiscard]] RandomScene balls_scene(std::uint64_t seed, std::uint64_t index);
 
 }  // namespace kairos::experiments

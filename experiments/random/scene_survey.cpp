@@ -30,16 +30,17 @@ Tally run_block(const SceneSurvey& survey, std::uint64_t first, std::uint64_t co
   Tally tally;
   const double start = thread_seconds();
   for (std::uint64_t i = first; i < first + count; ++i) {
-    tally.add(i, try_scene(scene_of(survey, i)));
+    const RandomScene scene = scene_of(survey, i);
+    tally.add(i, survey.balls ? try_by_two_searches(scene) : try_scene(scene));
   }
   tally.seconds = thread_seconds() - start;
   return tally;
 }
 
 std::string survey_key(const SceneSurvey& survey) {
-  return fmt::format("kairos random-scenes 1{}{} seed {} first {} program {}",
+  return fmt::format("kairos random-scenes 1{}{}{} seed {} first {} program {}",
                      survey.touching ? " touching" : "", survey.shapes ? " shapes" : "",
-                     survey.seed, survey.first, program_identity());
+                     survey.balls ? " balls" : "", survey.seed, survey.first, program_identity());
 }
 
 }  // namespace
@@ -47,6 +48,7 @@ std::string survey_key(const SceneSurvey& survey) {
 RandomScene scene_of(const SceneSurvey& survey, std::uint64_t number) {
   return survey.touching ? touching_scene(survey.seed, number)
          : survey.shapes ? shapes_scene(survey.seed, number)
+         : survey.balls  ? balls_scene(survey.seed, number)
                          : random_scene(survey.seed, number);
 }
 

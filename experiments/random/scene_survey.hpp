@@ -16,6 +16,7 @@ struct SceneSurvey {
   std::uint64_t first = 0;
   bool touching = false;    ///< `touching_scene` instead of `random_scene`
   bool shapes = false;      ///< `shapes_scene` instead
+  bool balls = false;       ///< `balls_scene` instead
   std::size_t threads = 0;  ///< 0: one per core; results do not depend on it
 };
 

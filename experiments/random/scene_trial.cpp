@@ -8,7 +8,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <utility>
 
 namespace kairos::experiments {
 namespace {
@@ -81,7 +83,8 @@ class Shrinker {
 
   bool keep(const RandomScene& smaller) {
     ++tries_;
-    if (try_scene(smaller).fate != fate_) {
+    const Trial trial = fate_ == Fate::differs ? try_by_two_searches(smaller) : try_scene(smaller);
+    if (trial.fate != fate_) {
       return false;
     }
     scene_ = smaller;
@@ -131,11 +134,16 @@ class Shrinker {
   int tries_ = 0;
 };
 
-Trial try_model(const Model& model, bool roundoff) {
+Trial try_model(const Model& model, bool roundoff, RunResult* end = nullptr) {
   SceneWatch watch;
   try {
-    return trial_of(
-        simulate(model, {.max_events = SceneWatch::most_in_frame, .roundoff = roundoff}, watch));
+    RunResult result =
+        simulate(model, {.max_events = SceneWatch::most_in_frame, .roundoff = roundoff}, watch);
+    const Trial trial = trial_of(result);
+    if (end != nullptr) {
+      *end = std::move(result);
+    }
+    return trial;
   } catch (const BrokenPromise& broken) {
     return {broken.fate, broken.what, broken.time, 0};
   }
@@ -163,6 +171,8 @@ std::string_view to_string(Fate fate) {
       return "law broken";
     case Fate::apart:
       return "held apart";
+    case Fate::differs:
+      return "other bits";
   }
   return "";
 }
@@ -175,6 +185,40 @@ Trial try_scene(const RandomScene& scene) {
     const Trial trial = try_model(model, false);
     // What steps and impacts lose to roundoff is replayed only where it shows.
     return trial.fate == Fate::ledger ? try_model(model, true) : trial;
+  } catch (const InputError& error) {
+    return {Fate::invalid, error.what(), 0.0, 0};
+  }
+}
+
+Trial try_by_two_searches(const RandomScene& scene) {
+  try {
+    const std::string text = scene.toml();
+    std::array<RunResult, 2> ends;
+    std::array<Trial, 2> trials;
+    for (std::size_t k = 0; k < 2; ++k) {
+      ModelOptions options;
+      options.broad_phase = k == 0 ? "cells" : "all-pairs";
+      const Model model(parse_scene(text, scene.name + ".toml"), options);
+      trials[k] = try_model(model, false, &ends[k]);
+      if (trials[k].fate == Fate::ledger) {
+        trials[k] = try_model(model, true, &ends[k]);
+      }
+    }
+    if (trials[0].failed() || trials[1].failed()) {
+      return trials[0].failed() ? trials[0] : trials[1];
+    }
+    const auto bytes = [](RunResult& end) {
+      Archive archive;
+      archive(end.end, end.state, end.ledger, end.reason);
+      return archive.bytes();
+    };
+    if (trials[0].impacts != trials[1].impacts || bytes(ends[0]) != bytes(ends[1])) {
+      return {Fate::differs,
+              fmt::format("{} impacts by cells, {} with every pair asked", trials[0].impacts,
+                          trials[1].impacts),
+              trials[0].time, trials[0].impacts};
+    }
+    return trials[0];
   } catch (const InputError& error) {
     return {Fate::invalid, error.what(), 0.0, 0};
   }

@@ -24,11 +24,12 @@ enum class Fate {
   invalid,     ///< refused: the scene is wrong, which is the generator's mistake
   law,         ///< an impact of two that part, or a rebound that breaks restitution
   apart,       ///< told to be in contact, and not near each other in a drawn frame
+  differs,     ///< other bits when neighbours are found another way
 };
-constexpr Fate last_of(Fate) { return Fate::apart; }
-inline constexpr std::array all_fates{Fate::right,  Fate::not_finite, Fate::overlap,
-                                      Fate::ledger, Fate::hang,       Fate::law,
-                                      Fate::apart,  Fate::invalid,    Fate::stopped};
+constexpr Fate last_of(Fate) { return Fate::differs; }
+inline constexpr std::array all_fates{Fate::right,   Fate::not_finite, Fate::overlap, Fate::ledger,
+                                      Fate::hang,    Fate::law,        Fate::apart,   Fate::differs,
+                                      Fate::invalid, Fate::stopped};
 [[nodiscard]] std::string_view to_string(Fate fate);
 
 struct Trial {
@@ -44,6 +45,8 @@ struct Trial {
 
 /// Runs the scene and watches.
 [[nodiscard]] Trial try_scene(const RandomScene& scene);
+/// The same with neighbours from cells, and once more with every pair asked: the same bits.
+[[nodiscard]] Trial try_by_two_searches(const RandomScene& scene);
 
 /// A smaller scene that fails in the same way: fewer bodies, shorter, simpler numbers.
 [[nodiscard]] RandomScene shrink(const RandomScene& scene, Fate fate);

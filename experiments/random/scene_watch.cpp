@@ -140,7 +140,12 @@ void SceneWatch::check_overlap(std::span<const BodyState> bodies, Instant t) con
 /// By geometry of its own, which no detector shares.
 void SceneWatch::check_pair(BodyIndex a, const BodyState& state_a, BodyIndex b,
                             const BodyState& state_b, Instant t) const {
-  const double depth = plain_depth(model_->shape(a), state_a.pose, model_->shape(b), state_b.pose);
+  Pose pose_b = state_b.pose;
+  if (const auto& box = model_->scene().periodic;
+      box && std::isfinite(bounding_radius(model_->shape(a)) + bounding_radius(model_->shape(b)))) {
+    pose_b.position += box->shift(box->nearest(pose_b.position - state_a.pose.position));
+  }
+  const double depth = plain_depth(model_->shape(a), state_a.pose, model_->shape(b), pose_b);
   const double scale = state_a.pose.position.norm() + state_b.pose.position.norm() +
                        radius_of(model_->shape(a)) + radius_of(model_->shape(b));
   // Bodies in touch may stay so to 16 times the bound of a gap's rounding, 12 eps of what it is a

@@ -127,6 +127,23 @@ void check_enough(const Compared& compared) {
 
 }  // namespace
 
+// Not the fate `differs` either: neighbours from cells, and every pair asked.
+TEST_CASE("random scenes of balls: no NaN, no overlap, no hang, one result", "[random][slow]") {
+  constexpr std::size_t count = 200;
+  std::vector<Trial> trials(count);
+  parallel_for(count, 0,
+               [&](std::size_t i) { trials[i] = try_by_two_searches(balls_scene(seed, i)); });
+  std::int64_t impacts = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    INFO("kairos random-scenes --balls --seed "
+         << seed << " --first " << i << " --count 1: " << to_string(trials[i].fate) << ": "
+         << trials[i].reason);
+    CHECK_FALSE(trials[i].failed());
+    impacts += trials[i].impacts;
+  }
+  CHECK(impacts > 10'000);
+}
+
 TEST_CASE("a thousand random scenes: no NaN, no overlap, no hang, few stops", "[random][slow]") {
   constexpr std::size_t count = 1000;
   std::vector<Trial> trials(count);

@@ -39,7 +39,9 @@ void EventPredictor::predict(BodyIndex i, Instant t, BodyIndex except) {
   enter(i, t);
   neighbours_.clear();
   neighbourhood_->near(i, neighbours_);
-  std::erase_if(neighbours_, [except](const Neighbour& j) { return j.body == except; });
+  // Of its images the others have not been asked about: it had not entered yet.
+  std::erase_if(neighbours_,
+                [except](const Neighbour& j) { return j.body == except && is_zero(j.image); });
   survey(i, before_all);
   run_.agenda.file(i);
 }
@@ -220,6 +222,9 @@ void EventPredictor::predict_near(BodyIndex i, const Neighbour& j, Instant known
 
 void EventPredictor::predict_pair(BodyIndex i, BodyIndex j, const Image& n, Instant t) {
   ask(i, {j, n}, t, before_all);
+  if (neighbourhood_) {
+    run_.agenda.file(i);  // the meeting may be kept as that of i
+  }
 }
 
 void EventPredictor::ask(BodyIndex i, const Neighbour& other, Instant from, Instant known) {

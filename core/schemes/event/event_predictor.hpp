@@ -27,7 +27,7 @@ class EventPredictor {
   void predict_all(Instant t);
   /// All pairs of i, which moves or meets others from t on as it did not before.
   void predict(BodyIndex i, Instant t) { predict(i, t, i); }
-  /// All pairs of i but that with `except`.
+  /// All pairs of i but that with `except`, as it is itself and not as an image.
   void predict(BodyIndex i, Instant t, BodyIndex except);
   /// Body i, which moves as before, comes near others.
   void cross(BodyIndex i, Instant t);
