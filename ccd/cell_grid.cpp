@@ -1,9 +1,9 @@
 #include "ccd/cell_grid.hpp"
 
 #include "core/exponential.hpp"
+#include "core/large_pages.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdlib>
 
@@ -58,7 +58,7 @@ CellLayout::CellLayout(const Model& model, double tolerance, const CellSize& ask
   }
   const double usual = std::max(least, asked.width * cube_root(size.prod() * bodies_to_a_cell / n));
   width.setConstant(usual);
-  farthest = 0x1p36 * margin;
+  farthest = std::min(0x1p36 * margin, 0x1p29 * usual);  // cells are counted in 32 bits
   // Not more cells than bodies call for: along the longest axis they then coincide.
   double all = 1.0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -70,8 +70,10 @@ CellLayout::CellLayout(const Model& model, double tolerance, const CellSize& ask
       width[axis] = period[axis] / static_cast<double>(counts[k]);
     } else {
       const double needed = size[axis] / usual + 3.0;
-      counts[k] = static_cast<std::int64_t>(
-          std::bit_ceil(static_cast<std::uint64_t>(std::clamp(needed, 4.0, 0x1p20))));
+      counts[k] = static_cast<std::int64_t>(std::ceil(std::clamp(needed, 4.0, 0x1p20)));
+      constexpr double countable = 0x1p30;
+      const double begins = std::floor(low[axis] / usual) - 1.0;
+      first[k] = std::abs(begins) < countable ? static_cast<std::int64_t>(begins) : 0;
     }
     all *= static_cast<double>(counts[k]);
   }
@@ -80,22 +82,23 @@ CellLayout::CellLayout(const Model& model, double tolerance, const CellSize& ask
     std::size_t longest = 3;
     for (std::size_t k = 0; k < 3; ++k) {
       const bool open = period[static_cast<Eigen::Index>(k)] == 0.0;
-      longest = open && (longest == 3 || counts[k] > counts[longest]) ? k : longest;
+      const bool divides = open && counts[k] > 4;
+      longest = divides && (longest == 3 || counts[k] > counts[longest]) ? k : longest;
     }
     if (longest == 3) {
-      break;  // periods have as many cells as bodies call for
+      break;  // periods have as many cells as bodies call for, the rest as few as may be
     }
-    counts[longest] /= 2;
-    all /= 2.0;
+    all /= static_cast<double>(counts[longest]);
+    counts[longest] = std::max<std::int64_t>(counts[longest] / 2, 4);
+    all *= static_cast<double>(counts[longest]);
   }
 }
 
-CellGrid::CellGrid(const std::array<std::int64_t, 3>& counts)
-    : count_(counts), cells_(static_cast<std::size_t>(counts[0] * counts[1] * counts[2])) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    mask_[k] = std::has_single_bit(static_cast<std::uint64_t>(count_[k])) ? count_[k] - 1 : 0;
-  }
-}
+CellGrid::CellGrid(const std::array<std::int64_t, 3>& counts,
+                   const std::array<std::int64_t, 3>& first)
+    : count_(counts),
+      first_(first),
+      cells_(scattered<Cell>(static_cast<std::size_t>(counts[0] * counts[1] * counts[2]))) {}
 
 void CellGrid::insert(const CellIndex& cell, BodyIndex i) {
   Cell* at = &cells_[place(cell[0], cell[1], cell[2])];
@@ -205,7 +208,8 @@ void CellGrid::append_chains(const CellIndex& first, const CellIndex& wide,
   for (std::int64_t dz = 0; dz <= 2 * wide[2]; ++dz) {
     for (std::int64_t dy = 0; dy <= 2 * wide[1]; ++dy) {
       for (std::int64_t dx = 0; dx <= 2 * wide[0]; ++dx) {
-        const Cell& cell = cells_[place(first[0] + dx, first[1] + dy, first[2] + dz)];
+        const Cell& cell = cells_[at(beyond(first[0] + dx, 0), beyond(first[1] + dy, 1),
+                                     beyond(first[2] + dz, 2))];
         if (cell.next != none) {
           append_chain(&chained_[cell.next], out);
         }

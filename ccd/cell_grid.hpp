@@ -30,9 +30,10 @@ struct CellLayout {
   Vector3 width = Vector3::Ones();
   Vector3 per_width = Vector3::Ones();  ///< its inverse
   double farthest = 0.0;                ///< coordinates beyond this resolve no margin, m
-  /// Of cells along each axis: a power of two, or as many as divide a period.
+  /// Of cells along each axis: as many as bodies take up at the start, or as divide a period.
   std::array<std::int64_t, 3> counts{4, 4, 4};
-  bool fits = true;  ///< whether periods have room for at least four cells each
+  std::array<std::int64_t, 3> first{};  ///< the cell along each axis with which that begins
+  bool fits = true;                     ///< whether periods have room for at least four cells each
 };
 
 /// Bodies by cell, on a torus: cells a whole number of turns apart are one.
@@ -40,7 +41,8 @@ class CellGrid {
  public:
   using Id = std::uint32_t;  ///< of a body
 
-  explicit CellGrid(const std::array<std::int64_t, 3>& counts);
+  /// `first`: so many cells from there on lie in a row.
+  CellGrid(const std::array<std::int64_t, 3>& counts, const std::array<std::int64_t, 3>& first);
 
   [[nodiscard]] std::int64_t count(std::size_t axis) const { return count_[axis]; }
 
@@ -66,15 +68,20 @@ class CellGrid {
 
   /// Where cell c is along an axis of the torus.
   [[nodiscard]] std::int64_t turned(std::int64_t c, std::size_t axis) const {
-    if (mask_[axis] != 0) {
-      return c & mask_[axis];
+    const std::int64_t from = c - first_[axis];
+    if (static_cast<std::uint64_t>(from) < static_cast<std::uint64_t>(count_[axis])) {
+      return from;  // most are where bodies began: a division takes long
     }
-    const std::int64_t rest = c % count_[axis];
+    const std::int64_t rest = from % count_[axis];
     return rest < 0 ? rest + count_[axis] : rest;
   }
   /// The cell after that, along an axis of the torus.
   [[nodiscard]] std::int64_t next(std::int64_t turned, std::size_t axis) const {
     return turned + 1 == count_[axis] ? 0 : turned + 1;
+  }
+  /// The same of one that is less than a turn beyond the last.
+  [[nodiscard]] std::int64_t beyond(std::int64_t turned, std::size_t axis) const {
+    return turned < count_[axis] ? turned : turned - count_[axis];
   }
   [[nodiscard]] std::size_t at(std::int64_t x, std::int64_t y, std::int64_t z) const {
     return static_cast<std::size_t>((z * count_[1] + y) * count_[0] + x);
@@ -88,7 +95,7 @@ class CellGrid {
   void append_chain(const Cell* cell, std::vector<Id>& out) const;
 
   std::array<std::int64_t, 3> count_{};
-  std::array<std::int64_t, 3> mask_{};  ///< 0: the count is no power of two
+  std::array<std::int64_t, 3> first_{};
   std::vector<Cell> cells_;
   std::vector<Cell> chained_;
   Id free_ = none;

@@ -5,6 +5,7 @@
 #include "ccd/rounding/roundoff.hpp"
 #include "ccd/swept_windows.hpp"
 #include "core/archive.hpp"
+#include "core/large_pages.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,9 +30,9 @@ class Cells final : public Neighbourhood {
  public:
   Cells(const Model& model, double tolerance, const CellSize& size)
       : layout_(model, tolerance, size),
-        grid_(layout_.counts),
+        grid_(layout_.counts, layout_.first),
         large_(model, make_dynamic_tree(model.size()), tolerance),
-        places_(model.size()),
+        places_(scattered<Place>(model.size())),
         usual_(model.size()) {
     for (BodyIndex i = 0; i < model.size(); ++i) {
       usual_[i] =
@@ -52,7 +53,7 @@ class Cells final : public Neighbourhood {
       return large_.enter(i, moving, t, until);
     }
     const Vector3 p = moving.motion.position(s);
-    if (places_[i].at != Place::in_cell || !inside(places_[i].cell, p)) {
+    if (places_[i].at != Place::in_cell || !inside(places_[i].cell(), p)) {
       move(i, cell_of(p));
     }
     return exit(i, moving, p, t, until);
@@ -61,9 +62,9 @@ class Cells final : public Neighbourhood {
   void near(BodyIndex i, std::vector<Neighbour>& out) override {
     if (places_[i].at == Place::in_cell) {
       found_.clear();
-      grid_.around(places_[i].cell, found_);
+      grid_.around(places_[i].cell(), found_);
       tell(i, out);
-      large_.boxes().overlapping(reach(places_[i].cell), out);
+      large_.boxes().overlapping(reach(places_[i].cell()), out);
     } else if (places_[i].at == Place::in_box) {
       large_.near(i, out);
       near_box(large_.swept(i), out);
@@ -79,7 +80,7 @@ class Cells final : public Neighbourhood {
       return crosses;
     }
     const Vector3 p = moving.motion.position(s);
-    const CellIndex before = places_[i].cell;
+    const CellIndex before = places_[i].cell();
     const CellIndex now = cell_of(p);
     if (now != before) {
       move(i, now);
@@ -104,7 +105,7 @@ class Cells final : public Neighbourhood {
   void go_on_as(BodyIndex i, const Image& n) override {
     if (places_[i].at == Place::in_cell) {  // the same one on the torus
       for (std::size_t k = 0; k < 3; ++k) {
-        places_[i].cell[k] += n[k] * grid_.count(k);
+        places_[i].along[k] += n[k] * static_cast<std::int32_t>(grid_.count(k));
       }
     } else if (places_[i].at == Place::in_box) {
       large_.go_on_as(i, n);
@@ -118,7 +119,7 @@ class Cells final : public Neighbourhood {
       for (BodyIndex i = 0; i < places_.size(); ++i) {
         archive.require(places_[i].at != Place::in_box || large_.is_known(i));
         if (places_[i].at == Place::in_cell) {
-          grid_.insert(places_[i].cell, i);
+          grid_.insert(places_[i].cell(), i);
         }
       }
     }
@@ -127,11 +128,13 @@ class Cells final : public Neighbourhood {
  private:
   struct Place {
     enum At : std::uint8_t { nowhere, in_cell, in_box };
-    CellIndex cell{};
+    std::array<std::int32_t, 3> along{};
     At at = nowhere;
 
+    [[nodiscard]] CellIndex cell() const { return {along[0], along[1], along[2]}; }
+
     void persist(Archive& archive) {
-      archive(cell[0], cell[1], cell[2]);
+      archive(along);
       auto where = static_cast<std::uint8_t>(at);
       archive(where);
       archive.require(where <= in_box);
@@ -196,7 +199,7 @@ class Cells final : public Neighbourhood {
     double stays = infinity;
     double least = infinity;
     for (int k = 0; k < 3; ++k) {
-      const double below = p[k] - (corner(places_[i].cell, k) - allowed);
+      const double below = p[k] - (corner(places_[i].cell(), k) - allowed);
       const double above = layout_.width[k] + 2.0 * allowed - below;
       least = std::min({least, below, above});
       if (motion.position.degree() <= 2) {
@@ -217,7 +220,7 @@ class Cells final : public Neighbourhood {
 
   void leave(BodyIndex i) {
     if (places_[i].at == Place::in_cell) {
-      grid_.remove(places_[i].cell, i);
+      grid_.remove(places_[i].cell(), i);
     } else if (places_[i].at == Place::in_box) {
       large_.leave(i);
     }
@@ -226,7 +229,10 @@ class Cells final : public Neighbourhood {
   void move(BodyIndex i, const CellIndex& to) {
     leave(i);
     grid_.insert(to, i);
-    places_[i] = {to, Place::in_cell};
+    places_[i].at = Place::in_cell;
+    for (std::size_t k = 0; k < 3; ++k) {
+      places_[i].along[k] = static_cast<std::int32_t>(to[k]);
+    }
   }
 
   /// Appends whom `found_` holds beside i, each as the image that is around the cell of i: bodies
@@ -243,14 +249,14 @@ class Cells final : public Neighbourhood {
       out.resize(static_cast<std::size_t>(end - out.data()));
       return;
     }
-    const CellIndex& cell = places_[i].cell;
+    const CellIndex cell = places_[i].cell();
     for (const CellGrid::Id j : found_) {
       if (j == i) {
         continue;
       }
       Neighbour found{j};
       for (std::size_t k = 0; k < 3; ++k) {
-        const std::int64_t apart = cell[k] - places_[j].cell[k];
+        const std::int64_t apart = cell[k] - places_[j].along[k];
         if (periodic_->along[k] && (apart < -1 || apart > 1)) {
           // A whole number of turns and one cell at most.
           found.image[k] =
@@ -303,7 +309,7 @@ class Cells final : public Neighbourhood {
     for (std::size_t k = 0; k < 3; ++k) {
       if (periodic_ != nullptr && periodic_->along[k] && !everywhere[k]) {
         const auto turns = static_cast<double>(grid_.count(k));
-        const std::int64_t cell = places_[j].cell[k];
+        const std::int64_t cell = places_[j].along[k];
         least[k] = static_cast<std::int32_t>(std::ceil(static_cast<double>(low[k] - cell) / turns));
         most[k] =
             static_cast<std::int32_t>(std::floor(static_cast<double>(high[k] - cell) / turns));

@@ -7,9 +7,13 @@ namespace kairos {
 inline namespace core {
 
 /// Memory of a scene and its model per body, bytes: a little more than was measured with balls.
-inline constexpr double bytes_in_model = 1536.0;
-/// Memory of a run per body beside that; `event-driven` takes most of all schemes.
-inline constexpr double bytes_in_run = 4096.0;
+inline constexpr double bytes_in_model = 1024.0;
+/// Memory of a run of `event-driven` per ball beside that: a test holds both to what is taken.
+inline constexpr double bytes_in_run = 1024.0;
+/// The same of what is no ball on a parabola, and has a motion and a stepper of its own.
+inline constexpr double bytes_of_own_motion = 4096.0;
+/// The same per body of any other scheme: `substepped` takes most.
+inline constexpr double bytes_in_frames = 5120.0;
 
 /// Memory that this process may still take, bytes: what is free on the machine, within the control
 /// group and within the limit of its address space, whichever is least. Read from Linux; infinite

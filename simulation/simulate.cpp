@@ -124,6 +124,20 @@ Plan make_plan(const Model& model, const RunChoice& choice, const PlugIns& own) 
   return plan;
 }
 
+/// What a run takes of memory per body, bytes.
+double bytes_of_run(const Model& model, std::string_view scheme) {
+  if (scheme != "event-driven") {
+    return bytes_in_frames;
+  }
+  double sum = 0.0;
+  for (BodyIndex i = 0; i < model.size(); ++i) {
+    const bool flies =
+        model.is_free(i) && !model.rotates(i) && model.closed_form(model.island_of(i));
+    sum += flies ? bytes_in_run : bytes_of_own_motion;
+  }
+  return sum / static_cast<double>(model.size());
+}
+
 std::string stepper_refusal(const Model& model, const Plan& plan) {
   for (std::size_t i = 0; i < model.islands().size(); ++i) {
     const std::unique_ptr<Stepper> stepper = plan.method.stepper(model, i);
@@ -226,13 +240,14 @@ std::string why_refused(const Model& model, const RunChoice& choice, const PlugI
 
 RunResult simulate(const Model& model, const RunChoice& choice, Recorder& recorder,
                    const Continuation& continuation, const PlugIns& own) {
+  Plan plan = make_plan(model, choice, own);
   if (model.size() > few_bodies) {
-    if (const std::string why = why_no_room(model.size(), bytes_in_run, free_memory());
+    const double bytes_a_body = bytes_of_run(model, plan.scheme->info().name);
+    if (const std::string why = why_no_room(model.size(), bytes_a_body, free_memory());
         !why.empty()) {
       throw InputError(model.scene().path, 0, "", why);
     }
   }
-  Plan plan = make_plan(model, choice, own);
   if (const std::string reason = refusal(model, plan); !reason.empty()) {
     throw InputError(model.scene().path, 0, "", reason);
   }

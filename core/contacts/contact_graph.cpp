@@ -36,8 +36,16 @@ void ContactGraph::touch(BodyIndex i, BodyIndex j) {
 
 void ContactGraph::part(BodyIndex i, BodyIndex j) {
   if (patches_.erase({i, j}) + patches_.erase({j, i}) > 0) {
-    std::erase(partners_[i], j);
-    std::erase(partners_[j], i);
+    leave(i, j);
+    leave(j, i);
+  }
+}
+
+void ContactGraph::leave(BodyIndex i, BodyIndex j) {
+  const auto found = partners_.find(i);
+  std::erase(found->second, j);
+  if (found->second.empty()) {
+    partners_.erase(found);
   }
 }
 
@@ -62,7 +70,7 @@ void ContactGraph::persist(Archive& archive) {
   for (std::size_t k = 0; k < n; ++k) {
     Patch patch;
     archive(patch);
-    archive.require(patch.a < partners_.size() && patch.b < partners_.size() &&
+    archive.require(patch.a < rank_.size() && patch.b < rank_.size() &&
                     patch.a != patch.b && !joins(patch.a, patch.b));
     join(patch.a, patch.b) = patch;
   }

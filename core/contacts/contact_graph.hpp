@@ -35,10 +35,11 @@ struct Patch {
 class ContactGraph {
  public:
   /// @param rank  of each body in the order of names
-  explicit ContactGraph(const std::vector<std::uint32_t>& rank)
-      : rank_(rank), partners_(rank.size()) {}
+  explicit ContactGraph(const std::vector<std::uint32_t>& rank) : rank_(rank) {}
 
-  [[nodiscard]] bool holds(BodyIndex i) const { return !partners_[i].empty(); }
+  [[nodiscard]] bool holds(BodyIndex i) const {
+    return !partners_.empty() && partners_.contains(i);
+  }
   [[nodiscard]] bool empty() const { return patches_.empty(); }
   /// nullptr where the two (in any order) are not held together.
   [[nodiscard]] Patch* find(BodyIndex i, BodyIndex j);
@@ -46,7 +47,10 @@ class ContactGraph {
     return patches_.contains({i, j}) || patches_.contains({j, i});
   }
   /// The bodies that body i touches, in the order of names, so that a resumed run goes on alike.
-  [[nodiscard]] const std::vector<BodyIndex>& partners(BodyIndex i) const { return partners_[i]; }
+  [[nodiscard]] const std::vector<BodyIndex>& partners(BodyIndex i) const {
+    const auto found = partners_.find(i);
+    return found == partners_.end() ? nobody_ : found->second;
+  }
 
   Patch& join(BodyIndex a, BodyIndex b);
   void part(BodyIndex i, BodyIndex j);
@@ -55,10 +59,12 @@ class ContactGraph {
 
  private:
   void touch(BodyIndex i, BodyIndex j);
+  void leave(BodyIndex i, BodyIndex j);
 
   std::vector<std::uint32_t> rank_;
   std::map<std::pair<BodyIndex, BodyIndex>, Patch> patches_;
-  std::vector<std::vector<BodyIndex>> partners_;
+  std::map<BodyIndex, std::vector<BodyIndex>> partners_;  ///< of bodies that have some
+  std::vector<BodyIndex> nobody_;
 };
 
 }  // namespace core

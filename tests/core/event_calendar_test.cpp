@@ -14,13 +14,14 @@ namespace {
 using Key = std::tuple<double, double, std::uint64_t, std::uint64_t>;
 
 /// The calendar beside a map that is in order by itself.
-class Beside {
+class Beside : private EventCalendar::Source {
  public:
   explicit Beside(std::size_t bodies) : calendar_(bodies) {}
 
   void put(std::uint32_t body, Instant t, std::uint64_t key) {
     forget(body);
-    calendar_.put({.time = t, .key = key, .key2 = body, .body = body, .stamp = 0});
+    put_[body] = {.time = t, .key = key, .key2 = body, .body = body, .stamp = 0};
+    calendar_.put(put_[body]);
     if (t < Instant::never()) {
       of_[body] = {t.seconds, t.correction, key, body};
       bodies_[of_[body]] = body;
@@ -28,7 +29,7 @@ class Beside {
   }
   /// The body that is due first, if both say the same; none left: `nobody`.
   std::uint32_t take() {
-    const EventCalendar::Entry* const first = calendar_.first();
+    const EventCalendar::Entry* const first = calendar_.first(*this);
     if (bodies_.empty() || first == nullptr) {
       CHECK((bodies_.empty() && first == nullptr));
       return nobody;
@@ -45,6 +46,9 @@ class Beside {
   double now = 0.0;
 
  private:
+  [[nodiscard]] EventCalendar::Entry due(std::uint32_t body) const override {
+    return put_.at(body);
+  }
   void forget(std::uint32_t body) {
     if (of_.contains(body)) {
       bodies_.erase(of_[body]);
@@ -53,6 +57,7 @@ class Beside {
   }
 
   EventCalendar calendar_;
+  std::map<std::uint32_t, EventCalendar::Entry> put_;
   std::map<Key, std::uint32_t> bodies_;
   std::map<std::uint32_t, Key> of_;
 };

@@ -1,6 +1,7 @@
 #include "core/schemes/event/event_accumulation.hpp"
 
 #include "core/archive.hpp"
+#include "core/large_pages.hpp"
 
 #include <fmt/format.h>
 
@@ -91,7 +92,7 @@ struct Joined {
 }  // namespace
 
 EventAccumulation::EventAccumulation(EventRun& run, const EventMotions& motions)
-    : run_(run), motions_(motions), histories_(run.model.size()) {}
+    : run_(run), motions_(motions), histories_(scattered<ImpactHistory>(run.model.size())) {}
 
 double EventAccumulation::restitution(BodyIndex a, BodyIndex b) const {
   return run_.model.restitution(a, b);

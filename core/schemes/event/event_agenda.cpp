@@ -1,6 +1,7 @@
 #include "core/schemes/event/event_agenda.hpp"
 
 #include "core/archive.hpp"
+#include "core/large_pages.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -13,7 +14,7 @@ Agenda::Agenda(const Model& model)
     : by_name_(model.size()),
       rank_(model.size()),
       version_(model.size(), 0),
-      records_(model.size()),
+      records_(scattered<Record>(model.size())),
       calendar_(model.size()) {
   std::iota(by_name_.begin(), by_name_.end(), BodyIndex{0});
   std::sort(by_name_.begin(), by_name_.end(),
@@ -58,15 +59,18 @@ void Agenda::file(BodyIndex i) {
   if (record.version != version_[i]) {
     record.meeting = Instant::never();
   }
-  EventCalendar::Entry entry;
-  entry.body = static_cast<std::uint32_t>(i);
+  calendar_.put(due(static_cast<std::uint32_t>(i)));
+}
+
+EventCalendar::Entry Agenda::due(std::uint32_t body) const {
+  const Record& record = records_[body];
   const bool crosses = record.crossing <= record.meeting;
-  const auto [a, b] = crosses ? std::pair{rank_[i], rank_[i]} : ranks(i, record.partner);
+  const auto [a, b] = crosses ? std::pair{rank_[body], rank_[body]} : ranks(body, record.partner);
   const Due due = crosses ? Due::horizon : Due::impact;
-  entry.time = std::min(record.crossing, record.meeting);
-  entry.key = static_cast<std::uint64_t>(due) << 32U | a;
-  entry.key2 = b;
-  calendar_.put(entry);
+  return {.time = std::min(record.crossing, record.meeting),
+          .key = static_cast<std::uint64_t>(due) << 32U | a,
+          .key2 = b,
+          .body = body};
 }
 
 DueEvent Agenda::pop_record(const EventCalendar::Entry& first) {
@@ -91,7 +95,7 @@ DueEvent Agenda::pop_record(const EventCalendar::Entry& first) {
 }
 
 DueEvent Agenda::pop() {
-  if (const EventCalendar::Entry* const first = calendar_.first(); first != nullptr) {
+  if (const EventCalendar::Entry* const first = calendar_.first(*this); first != nullptr) {
     const auto key =
         std::tuple(first->time.seconds, first->time.correction, first->key, first->key2);
     if (heap_.empty() || key < heap_.front().full_key()) {

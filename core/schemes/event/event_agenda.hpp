@@ -52,12 +52,12 @@ struct DueEvent {
 /// What is predicted lies in a binary heap until it comes up. Bodies that are cheap to ask about
 /// have one record each instead, of their earliest meeting and of when they come near others: when
 /// a record comes up and is stale, its body is asked about again.
-class Agenda {
+class Agenda : private EventCalendar::Source {
  public:
   explicit Agenda(const Model& model);
 
   [[nodiscard]] bool due_before(Instant t) {
-    const EventCalendar::Entry* const first = calendar_.first();
+    const EventCalendar::Entry* const first = calendar_.first(*this);
     return (!heap_.empty() && heap_.front().time < t) || (first != nullptr && first->time < t);
   }
   void push(Instant t, Due due, BodyIndex a, BodyIndex b, double patience = 0.0,
@@ -134,6 +134,8 @@ class Agenda {
                                                               std::uint32_t other) const {
     return std::minmax(rank_[i], other);
   }
+  /// What comes up first of its record, if nothing has changed since it was filed.
+  [[nodiscard]] EventCalendar::Entry due(std::uint32_t body) const override;
   [[nodiscard]] DueEvent pop_record(const EventCalendar::Entry& first);
 
   void sweep_out();

@@ -16,6 +16,33 @@ void EventMotions::book_all(Instant t) {
   }
 }
 
+/// Into `now`, of which nobody needs anything between events but where fixed and driven bodies are:
+/// that is put aside until all has been told.
+const State& EventMotions::draw(Instant t) {
+  for (std::size_t k = 0; k < led_.size(); ++k) {
+    aside_[k] = now_[led_[k]];
+  }
+  for (BodyIndex i = 0; i < now_.size(); ++i) {
+    now_[i] = at(i, t);
+    if (!run_.boxes_on.empty()) {
+      now_[i].pose.position += run_.way_told(i);
+    }
+    mark_brought(i, Instant::never());
+  }
+  return now_;
+}
+
+void EventMotions::swap_aside() {
+  for (std::size_t k = 0; k < led_.size(); ++k) {
+    std::swap(now_[led_[k]], aside_[k]);
+  }
+}
+
+State EventMotions::last_drawn() && {
+  swap_aside();
+  return std::move(now_);
+}
+
 void EventMotions::book(Flow& flow, Instant t) {
   const Instant from = booked_until(flow);
   const double duration = t - from;

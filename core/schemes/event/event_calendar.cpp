@@ -25,11 +25,16 @@ bool EventCalendar::later(const Entry& x, const Entry& y) {
 }
 
 void EventCalendar::put(Entry entry) {
-  entry.stamp = latest_[entry.body].stamp + 1;
-  latest_[entry.body] = entry;
+  entry.stamp = ++latest_[entry.body];
   if (entry.time < Instant::never()) {
     file(entry);
   }
+}
+
+EventCalendar::Entry EventCalendar::entry_of(const Source& source, const Slip& slip) const {
+  Entry entry = source.due(slip.body);
+  entry.stamp = slip.stamp;
+  return entry;
 }
 
 void EventCalendar::file(const Entry& entry) {
@@ -41,18 +46,50 @@ void EventCalendar::file(const Entry& entry) {
     today_.push_back(entry);
     std::push_heap(today_.begin(), today_.end(), later);
   } else {
-    days_[static_cast<std::size_t>(number) & (days_.size() - 1)].push_back(
-        {entry.body, entry.stamp});
+    note(days_[static_cast<std::size_t>(number) & (days_.size() - 1)], {entry.body, entry.stamp});
     ++filed_;
   }
 }
 
-const EventCalendar::Entry* EventCalendar::first() {
+void EventCalendar::note(std::uint32_t& day, const Slip& slip) {
+  if (day == none || pages_[day].count == pages_[day].slips.size()) {
+    std::uint32_t page = free_;
+    if (page == none) {
+      page = static_cast<std::uint32_t>(pages_.size());
+      pages_.emplace_back();
+    } else {
+      free_ = pages_[page].next;
+    }
+    pages_[page].count = 0;
+    pages_[page].next = day;
+    day = page;
+  }
+  Page& page = pages_[day];
+  page.slips[page.count++] = slip;
+}
+
+/// Shows all slips of a day; it is empty then.
+template <typename See>
+void EventCalendar::tear_off(std::uint32_t& day, const See& see) {
+  while (day != none) {
+    Page& page = pages_[day];
+    for (std::uint32_t k = 0; k < page.count; ++k) {
+      see(page.slips[k]);
+    }
+    filed_ -= page.count;
+    const std::uint32_t next = page.next;
+    page.next = free_;
+    free_ = day;
+    day = next;
+  }
+}
+
+const EventCalendar::Entry* EventCalendar::first(const Source& source) {
   if (today_.empty() && filed_ == 0 && far_.empty()) {
     return nullptr;
   }
   if (per_day_ == 0.0 || filed_ + far_.size() > most_entries * latest_.size() + 1024) {
-    renew();
+    renew(source);
   }
   while (true) {
     while (!today_.empty()) {
@@ -66,69 +103,61 @@ const EventCalendar::Entry* EventCalendar::first() {
       if (far_.empty()) {
         return nullptr;
       }
-      renew();
+      renew(source);
       continue;
     }
-    begin_next_day();
+    begin_next_day(source);
   }
 }
 
-void EventCalendar::begin_next_day() {
+void EventCalendar::begin_next_day(const Source& source) {
   ++day_;
-  Day& day = days_[static_cast<std::size_t>(day_) & (days_.size() - 1)];
-  filed_ -= day.size();
-  for (const Slip& slip : day) {
+  tear_off(days_[static_cast<std::size_t>(day_) & (days_.size() - 1)], [&](const Slip& slip) {
     if (current(slip)) {
-      today_.push_back(latest_[slip.body]);
+      today_.push_back(entry_of(source, slip));
     }
-  }
-  day.clear();
+  });
   taken_ += today_.size();
   std::make_heap(today_.begin(), today_.end(), later);
   if (day_ >= check_) {
     const double mean =
         static_cast<double>(taken_) / (0.5 * static_cast<double>(days_.size()) * entries_a_day);
     if (mean > too_many || mean < too_few) {
-      renew();
+      renew(source);
     } else {
-      file_far();
+      file_far(source);
     }
   }
 }
 
 /// What has come within the ring's reach by half a turn of it.
-void EventCalendar::file_far() {
+void EventCalendar::file_far(const Source& source) {
   taken_ = 0;
   check_ = day_ + static_cast<std::int64_t>(days_.size() / 2);
-  Day again;
+  std::vector<Slip> again;
   again.swap(far_);
   for (const Slip& slip : again) {
     if (current(slip)) {
-      file(latest_[slip.body]);
+      file(entry_of(source, slip));
     }
   }
 }
 
 /// New days, of a length by which the next quarter of all entries fills them.
-void EventCalendar::renew() {
+void EventCalendar::renew(const Source& source) {
   std::vector<Entry> all;
-  const auto take = [&](const auto& from) {
-    for (const auto& entry : from) {
-      if (current(entry)) {
-        all.push_back(latest_[entry.body]);
-      }
+  const auto take = [&](const auto& slip) {
+    if (current(slip)) {
+      all.push_back(entry_of(source, {slip.body, slip.stamp}));
     }
   };
-  take(today_);
-  take(far_);
-  for (const Day& day : days_) {
-    take(day);
+  std::for_each(today_.begin(), today_.end(), take);
+  std::for_each(far_.begin(), far_.end(), take);
+  for (std::uint32_t& day : days_) {
+    tear_off(day, take);
   }
   if (days_.empty()) {
-    days_.resize(std::bit_ceil(std::clamp<std::size_t>(latest_.size() / 2, 64, 1U << 20U)));
-  }
-  for (Day& day : days_) {
-    day.clear();
+    days_.resize(std::bit_ceil(std::clamp<std::size_t>(latest_.size() / 2, 64, 1U << 20U)), none);
   }
   today_.clear();
   far_.clear();

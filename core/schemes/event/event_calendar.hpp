@@ -3,6 +3,7 @@
 #include "core/instant.hpp"
 #include "core/state.hpp"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -14,7 +15,8 @@ inline namespace core {
 /// Days hold some eight entries each, in the order in which they were made; only those of today are
 /// in a heap. An entry is put off by making another: older ones of the body are passed over.
 /// Entries at the same instant come in the order of their keys. What a calendar costs does not
-/// depend on how many bodies there are; the length of its days adapts.
+/// depend on how many bodies there are; the length of its days adapts. Who is due when is not kept
+/// here: a *source* tells it again when the day comes.
 class EventCalendar {
  public:
   /// When a body is due, and what goes first at the same instant.
@@ -25,15 +27,24 @@ class EventCalendar {
     std::uint32_t body = 0;
     std::uint32_t stamp = 0;  ///< of the body's latest entry, if this is it
   };
+  /// Remembers what was put.
+  class Source {
+   public:
+    /// As it was put last; its stamp means nothing.
+    [[nodiscard]] virtual Entry due(std::uint32_t body) const = 0;
 
-  explicit EventCalendar(std::size_t bodies) : latest_(bodies) {}
+   protected:
+    ~Source() = default;
+  };
+
+  explicit EventCalendar(std::size_t bodies) : latest_(bodies, 0) {}
 
   /// From now on body `entry.body` is due then; never: not at all.
   void put(Entry entry);
   /// It is not due any more.
-  void drop(std::uint32_t body) { ++latest_[body].stamp; }
+  void drop(std::uint32_t body) { ++latest_[body]; }
   /// The earliest; null: nobody is due. Valid until the next `put`.
-  [[nodiscard]] const Entry* first();
+  [[nodiscard]] const Entry* first(const Source& source);
 
  private:
   /// An entry that is not today's: what it says is the latest of its body, if that has its stamp.
@@ -41,22 +52,35 @@ class EventCalendar {
     std::uint32_t body = 0;
     std::uint32_t stamp = 0;
   };
-  using Day = std::vector<Slip>;
+  static constexpr std::uint32_t none = ~std::uint32_t{0};
+  /// Some slips of a day, and where more of them are: a line of the cache. Days that are over leave
+  /// theirs to others.
+  struct Page {
+    std::array<Slip, 7> slips{};
+    std::uint32_t count = 0;
+    std::uint32_t next = none;
+  };
 
   static bool later(const Entry& x, const Entry& y);
   template <typename EntryOrSlip>
   [[nodiscard]] bool current(const EntryOrSlip& entry) const {
-    return entry.stamp == latest_[entry.body].stamp;
+    return entry.stamp == latest_[entry.body];
   }
+  [[nodiscard]] Entry entry_of(const Source& source, const Slip& slip) const;
   void file(const Entry& entry);
-  void file_far();
-  void begin_next_day();
-  void renew();
+  void note(std::uint32_t& day, const Slip& slip);
+  template <typename See>
+  void tear_off(std::uint32_t& day, const See& see);
+  void file_far(const Source& source);
+  void begin_next_day(const Source& source);
+  void renew(const Source& source);
 
-  std::vector<Entry> latest_;  ///< by body
-  std::vector<Entry> today_;   ///< a heap, the earliest first
-  std::vector<Day> days_;      ///< the next ones, a ring
-  Day far_;                    ///< beyond those
+  std::vector<std::uint32_t> latest_;  ///< stamps, by body
+  std::vector<Entry> today_;           ///< a heap, the earliest first
+  std::vector<std::uint32_t> days_;    ///< the next ones, a ring: the first page of each; or none
+  std::vector<Page> pages_;
+  std::uint32_t free_ = none;  ///< a page that nobody needs, and so on
+  std::vector<Slip> far_;      ///< beyond those days
   std::size_t filed_ = 0;      ///< in `days_`
   std::int64_t day_ = 0;       ///< today's number
   std::int64_t check_ = 0;     ///< the day on which `far_` is looked through again

@@ -26,15 +26,17 @@ EventContacts::EventContacts(EventRun& run, EventMotions& motions, EventPredicto
       motions_(motions),
       predictor_(predictor),
       accumulation_(run, motions),
-      modes_(run, motions, predictor, accumulation_, graph, method.contact_stepper),
-      bodies_(run.model.size()) {}
+      modes_(run, motions, predictor, accumulation_, graph, method.contact_stepper) {}
 
 // --- Groups ------------------------------------------------------------------------------------
 
 bool EventContacts::settle(std::span<const BodyIndex> seeds, Instant t,
                            const EventModes::Wish& wish) {
   const auto adopt = [this](BodyIndex ball) {
-    return std::exchange(bodies_[ball].contact_begins, Instant::never());
+    const auto found = touching_.find(ball);
+    return found == touching_.end()
+               ? Instant::never()
+               : std::exchange(found->second.contact_begins, Instant::never());
   };
   return modes_.settle(seeds, t, adopt, wish);
 }
@@ -349,7 +351,7 @@ void EventContacts::settle(BodyIndex ball, const Support& support, double pressi
   follow(ball, support, t);
   motions_.set_support(ball, support);
   motions_.launch(ball, t);
-  auto& [settled, contact_begins] = bodies_[ball];
+  auto& [settled, contact_begins] = touching_[ball];
   if (settled != Instant::never() &&
       accumulation_.stalls(ball, support.surface, t, least_progress * run_.epoch())) {
     // At the rim of a face: it goes on over the edge.
@@ -383,16 +385,16 @@ void EventContacts::resume_support(BodyIndex i, Instant t) {
 
 void EventContacts::begin_contact(BodyIndex i, BodyIndex j, Instant t) {
   modes_.begin_contact(i, j, t);
-  Instant& begins = bodies_[i].contact_begins;
-  if (motions_.support(i) && begins == t) {
+  const auto touching = touching_.find(i);
+  if (motions_.support(i) && touching != touching_.end() && touching->second.contact_begins == t) {
     run_.time = t;
-    begins = told;
+    touching->second.contact_begins = told;
     motions_.note(EventKind::contact_begins, i, motions_.support(i)->surface, t);
   }
 }
 
 void EventContacts::end_contact(BodyIndex i, Instant t) {
-  Instant& began = bodies_[i].contact_begins;
+  Instant& began = touching_[i].contact_begins;
   const BodyIndex surface = motions_.support(i)->surface;
   motions_.set_support(i, std::nullopt);
   if (began < t) {  // otherwise it was still hopping
@@ -452,7 +454,25 @@ void EventContacts::cross_field(BodyIndex a, BodyIndex b, Instant t, bool enteri
 }
 
 void EventContacts::Touching::persist(Archive& archive) { archive(settled, contact_begins); }
-void EventContacts::persist(Archive& archive) { archive(accumulation_, bodies_, modes_); }
+
+void EventContacts::persist(Archive& archive) {
+  std::size_t n = touching_.size();
+  archive.count(n);
+  if (archive.reading()) {
+    for (std::size_t k = 0; k < n; ++k) {
+      BodyIndex i = 0;
+      archive(i);
+      archive.require(i < run_.model.size());
+      archive(touching_[i]);
+    }
+  } else {
+    for (auto& [i, touching] : touching_) {
+      BodyIndex ball = i;
+      archive(ball, touching);
+    }
+  }
+  archive(accumulation_, modes_);
+}
 
 }  // namespace core
 }  // namespace kairos

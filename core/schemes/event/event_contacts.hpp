@@ -5,6 +5,7 @@
 #include "core/schemes/event/event_motions.hpp"
 #include "core/schemes/event/event_predictor.hpp"
 
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -89,7 +90,8 @@ class EventContacts {
   EventPredictor& predictor_;
   EventAccumulation accumulation_;
   EventModes modes_;
-  std::vector<Touching> bodies_;
+  /// Balls that a face supports, or has: few of many.
+  std::map<BodyIndex, Touching> touching_;
 };
 
 }  // namespace core

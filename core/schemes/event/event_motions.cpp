@@ -2,6 +2,7 @@
 
 #include "core/archive.hpp"
 #include "core/joint_system.hpp"
+#include "core/large_pages.hpp"
 #include "core/memoryless_stepper.hpp"
 
 #include <algorithm>
@@ -32,12 +33,20 @@ EventMotions::EventMotions(EventRun& run, const Method& method)
       flows_(run.model.islands().size()),
       shares_(run.model.islands().size(), 0),
       booked_until_(run.model.islands().size()),
-      now_(run.model.initial_state())
+      now_(scattered<BodyState>(run.model.size()))
 #ifndef NDEBUG
       ,
       brought_(run.model.size(), run.time)
 #endif
 {
+  const State initial = run.model.initial_state();
+  std::copy(initial.begin(), initial.end(), now_.begin());
+  for (BodyIndex i = 0; i < now_.size(); ++i) {
+    if (!run_.model.is_free(i)) {
+      led_.push_back(i);
+      aside_.push_back(now_[i]);
+    }
+  }
   for (std::size_t k = 0; k < flows_.size(); ++k) {
     shares_[k] = static_cast<char>(may_share(k));
     if (shares_[k] == 0) {
@@ -588,7 +597,7 @@ void EventMotions::persist_bodies(Archive& archive) {
 }
 
 void EventMotions::persist(Archive& archive) {
-  archive(now_);
+  archive(now_, aside_);
   persist_bodies(archive);
   std::int64_t gone = evaluations_ + (shared_ != nullptr ? shared_->stepper->evaluations() : 0);
   archive(gone);

@@ -147,6 +147,11 @@ class EventMotions {
   /// The ledger follows the island of i up to t; `now` is then the state there.
   void book(BodyIndex i, Instant t) { book(flow_of(i), t); }
   void book_all(Instant t);
+  /// The states of all bodies at t, as they are told; until `end_drawing`, before the next event.
+  [[nodiscard]] const State& draw(Instant t);
+  void end_drawing() { swap_aside(); }
+  /// What was drawn last, if there has been no event since.
+  [[nodiscard]] State last_drawn() &&;
 
   /// Tells the recorder what happened to two bodies whose states did not jump.
   void note(EventKind kind, BodyIndex a, BodyIndex b, Instant t, Grade grade = Grade::exact);
@@ -213,6 +218,7 @@ class EventMotions {
   [[nodiscard]] const Ties& ties(BodyIndex i) const { return ties_[i] ? *ties_[i] : no_ties_; }
   [[nodiscard]] Ties& tie(BodyIndex i);
   void forget_rubs(BodyIndex i);
+  void swap_aside();
   void persist_bodies(Archive& archive);
   void set_forces_as_launched(Flow& flow);
   /// `now` of body i is its state at t. What is launched must be: asserts hold it.
@@ -237,6 +243,8 @@ class EventMotions {
   std::vector<Instant> booked_until_;  ///< by island: how far the ledger has followed it
   std::int64_t evaluations_ = 0;       ///< of flows that are no more
   State now_;
+  std::vector<BodyIndex> led_;  ///< bodies that are not free
+  State aside_;                 ///< of these, what is not `now`: as they were drawn last
 #ifndef NDEBUG
   std::vector<Instant> brought_;  ///< by body: when `now` is
 #endif

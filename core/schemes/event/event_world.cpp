@@ -16,8 +16,7 @@ EventWorld::EventWorld(const Model& model, const Method& method, const SchemeOpt
       predictor_(run_, motions_, grasps_, graph_, method),
       contacts_(run_, motions_, predictor_, graph_, method),
       hands_(run_, motions_, predictor_, contacts_, grasps_),
-      clock_(run_.options),
-      drawn_(model.initial_state()) {
+      clock_(run_.options) {
   if (model.scene().periodic) {
     run_.boxes_on.resize(model.size());
   }
@@ -123,15 +122,11 @@ void EventWorld::end_segment(BodyIndex i, Instant t) {
 bool EventWorld::draw() {
   run_.time = stopped() ? run_.stopped_at() : clock_.next();
   motions_.book_all(run_.time);
-  for (BodyIndex i = 0; i < run_.model.size(); ++i) {
-    drawn_[i] = motions_.at(i, run_.time);
-    if (!run_.boxes_on.empty()) {
-      drawn_[i].pose.position += run_.way_told(i);
-    }
-  }
-  run_.account.balance(run_.time, drawn_);
+  const State& drawn = motions_.draw(run_.time);
+  run_.account.balance(run_.time, drawn);
   run_.recorder.stage(Stage::draw, 1.0);
-  run_.recorder.frame({clock_.index(), run_.time, drawn_, run_.ledger, grasps_.in_hand()});
+  run_.recorder.frame({clock_.index(), run_.time, drawn, run_.ledger, grasps_.in_hand()});
+  motions_.end_drawing();
   ++run_.cost.frames;
   return !stopped() && open_frame();
 }
@@ -148,12 +143,12 @@ bool EventWorld::open_frame() {
 
 RunResult EventWorld::result() && {
   run_.cost.right_hand_sides += motions_.evaluations();
-  return std::move(run_).result(std::move(drawn_));
+  return std::move(run_).result(std::move(motions_).last_drawn());
 }
 
 /// What a run needs to go on, between a frame that was drawn and the next.
 void EventWorld::persist(Archive& archive) {
-  archive(run_, clock_, drawn_, grasps_, graph_, motions_, predictor_, contacts_);
+  archive(run_, clock_, grasps_, graph_, motions_, predictor_, contacts_);
   run_.recorder.persist(archive);
 }
 

@@ -49,7 +49,6 @@ class EventWorld {
   EventHands hands_;
 
   FrameClock clock_;
-  State drawn_;
 };
 
 }  // namespace core

@@ -11,36 +11,56 @@ void ImpactHistory::add(const Impact& impact, Instant t) {
   const double way = first ? 0.0 : (t - last_) * impact.approach;
   if (first || way > impact.near) {
     chain_ = 0;
-    partners_.clear();
+    if (rare_ != nullptr) {
+      rare_->partners.clear();
+    }
   }
-  if (chain_ > 0 && partners_.empty() && impact.partner != last_partner_) {
-    partners_.push_back(last_partner_);
+  if (chain_ > 0 && impact.partner != last_partner_ && rare().partners.empty()) {
+    rare_->partners.push_back(last_partner_);
   }
-  if (!partners_.empty() &&
-      std::find(partners_.begin(), partners_.end(), impact.partner) == partners_.end()) {
-    partners_.push_back(impact.partner);
+  if (rare_ != nullptr && !rare_->partners.empty()) {
+    std::vector<BodyIndex>& partners = rare_->partners;
+    if (std::find(partners.begin(), partners.end(), impact.partner) == partners.end()) {
+      partners.push_back(impact.partner);
+    }
   }
   ++chain_;
   creeping_ = first || way > impact.tolerance ? 0 : creeping_ + 1;
   const bool again = !first && impact.partner == last_partner_;
   resting_ = impact.rest ? (again ? resting_ + 1 : 1) : 0;
   last_ = t;
-  last_partner_ = impact.partner;
+  last_partner_ = static_cast<std::uint32_t>(impact.partner);
 }
 
 std::vector<BodyIndex> ImpactHistory::partners() const {
-  return partners_.empty() && chain_ > 0 ? std::vector<BodyIndex>{last_partner_} : partners_;
+  if (rare_ != nullptr && !rare_->partners.empty()) {
+    return rare_->partners;
+  }
+  return chain_ > 0 ? std::vector<BodyIndex>{last_partner_} : std::vector<BodyIndex>{};
 }
 
 bool ImpactHistory::stalls(Instant t, double resolution) {
-  const bool first = stalled_ == Instant::never();
-  stalling_ = !first && t - stalled_ <= resolution ? stalling_ + 1 : 0;
-  stalled_ = t;
-  return stalling_ > most_stalling;
+  Rare& of = rare();
+  const bool first = of.stalled == Instant::never();
+  of.stalling = !first && t - of.stalled <= resolution ? of.stalling + 1 : 0;
+  of.stalled = t;
+  return of.stalling > most_stalling;
+}
+
+ImpactHistory::Rare& ImpactHistory::rare() {
+  if (rare_ == nullptr) {
+    rare_ = std::make_unique<Rare>();
+  }
+  return *rare_;
 }
 
 void ImpactHistory::persist(Archive& archive) {
-  archive(last_, chain_, partners_, last_partner_, creeping_, resting_, stalling_, stalled_);
+  bool more = rare_ != nullptr;
+  archive(last_, chain_, last_partner_, creeping_, resting_, more);
+  if (more) {
+    Rare& of = rare();
+    archive(of.partners, of.stalled, of.stalling);
+  }
 }
 
 }  // namespace core

@@ -4,6 +4,7 @@
 #include "core/state.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace kairos {
@@ -50,14 +51,20 @@ class ImpactHistory {
   static constexpr int most_resting = 3;
   static constexpr int most_stalling = 200;
 
+  /// What few bodies have.
+  struct Rare {
+    std::vector<BodyIndex> partners{};  ///< empty while there is but one, which is the last
+    Instant stalled = Instant::never();
+    int stalling = 0;
+  };
+  [[nodiscard]] Rare& rare();
+
   Instant last_ = Instant::never();
   std::int64_t chain_ = 0;
-  std::vector<BodyIndex> partners_;  ///< empty while there is but one, which is the last
-  BodyIndex last_partner_ = 0;
+  std::uint32_t last_partner_ = 0;
   int creeping_ = 0;
   int resting_ = 0;
-  int stalling_ = 0;
-  Instant stalled_ = Instant::never();
+  std::unique_ptr<Rare> rare_;  ///< null: none of that
 };
 
 }  // namespace core

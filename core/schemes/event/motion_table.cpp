@@ -1,5 +1,7 @@
 #include "core/schemes/event/motion_table.hpp"
 
+#include "core/large_pages.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -32,7 +34,7 @@ Vector3 coefficient(const Polynomial<3>& p, int k) {
 
 MotionTable::MotionTable(const Model& model)
     : model_(model),
-      flights_(model.size()),
+      flights_(scattered<BallFlight>(model.size())),
       forms_(model.size()),
       place_(model.size(), nowhere),
       whole_(model.size() <= few ? model.size() : 0) {
