@@ -209,9 +209,13 @@ class Cells final : public Neighbourhood {
       }
     }
     if (motion.position.degree() > 2) {
-      stays = motion.duration - s;
+      const double left = motion.duration - s;
+      stays = left;
       while (stays > 0.0 && !(motion.displacement_bound(s, s + stays) <= least)) {
         stays *= 0.5;
+      }
+      if (stays == left) {
+        return Instant::never();  // to its end, which rounding may put a little after now for ever
       }
     }
     const Instant crosses = t + stays;

@@ -137,14 +137,19 @@ void SceneWatch::check_overlap(std::span<const BodyState> bodies, Instant t) con
   }
 }
 
+/// Body b as the image that is nearest to a.
+Pose SceneWatch::seen(BodyIndex b, Pose pose_b, BodyIndex a, const Pose& pose_a) const {
+  const double radii = bounding_radius(model_->shape(a)) + bounding_radius(model_->shape(b));
+  if (const auto& box = model_->scene().periodic; box && std::isfinite(radii)) {
+    pose_b.position += box->shift(box->nearest(pose_b.position - pose_a.position));
+  }
+  return pose_b;
+}
+
 /// By geometry of its own, which no detector shares.
 void SceneWatch::check_pair(BodyIndex a, const BodyState& state_a, BodyIndex b,
                             const BodyState& state_b, Instant t) const {
-  Pose pose_b = state_b.pose;
-  if (const auto& box = model_->scene().periodic;
-      box && std::isfinite(bounding_radius(model_->shape(a)) + bounding_radius(model_->shape(b)))) {
-    pose_b.position += box->shift(box->nearest(pose_b.position - state_a.pose.position));
-  }
+  const Pose pose_b = seen(b, state_b.pose, a, state_a.pose);
   const double depth = plain_depth(model_->shape(a), state_a.pose, model_->shape(b), pose_b);
   const double scale = state_a.pose.position.norm() + state_b.pose.position.norm() +
                        radius_of(model_->shape(a)) + radius_of(model_->shape(b));
@@ -168,7 +173,8 @@ void SceneWatch::check_contacts(std::span<const BodyState> bodies, Instant t) co
     if (!grow(shape_a, more) && !grow(shape_b, more)) {
       continue;
     }
-    if (!(plain_depth(shape_a, bodies[a].pose, shape_b, bodies[b].pose) > 0.0)) {
+    const Pose pose_b = seen(b, bodies[b].pose, a, bodies[a].pose);
+    if (!(plain_depth(shape_a, bodies[a].pose, shape_b, pose_b) > 0.0)) {
       throw BrokenPromise{
           Fate::apart,
           fmt::format("{} are in contact, and more than {:.3g} m apart", names(a, b), more),

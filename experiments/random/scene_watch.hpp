@@ -39,6 +39,7 @@ class SceneWatch : public Recorder {
   void check_overlap(std::span<const BodyState> bodies, Instant t) const;
   void check_pair(BodyIndex a, const BodyState& state_a, BodyIndex b, const BodyState& state_b,
                   Instant t) const;
+  [[nodiscard]] Pose seen(BodyIndex b, Pose pose_b, BodyIndex a, const Pose& pose_a) const;
   void check_contacts(std::span<const BodyState> bodies, Instant t) const;
   [[nodiscard]] std::string names(BodyIndex a, BodyIndex b) const;
 
