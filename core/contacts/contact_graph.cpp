@@ -70,8 +70,8 @@ void ContactGraph::persist(Archive& archive) {
   for (std::size_t k = 0; k < n; ++k) {
     Patch patch;
     archive(patch);
-    archive.require(patch.a < rank_.size() && patch.b < rank_.size() &&
-                    patch.a != patch.b && !joins(patch.a, patch.b));
+    archive.require(patch.a < rank_.size() && patch.b < rank_.size() && patch.a != patch.b &&
+                    !joins(patch.a, patch.b));
     join(patch.a, patch.b) = patch;
   }
 }
