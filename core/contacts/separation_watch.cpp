@@ -100,7 +100,7 @@ class Watcher {
     const std::vector<double> start = heights(0.0);
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
       // What is nearer already, and draws away, may be so.
-      candidates_[c].least = 0.9375 * std::min(watch_.pair.nearest, start[c]);
+      candidates_[c].least = watch_.least * std::min(watch_.pair.nearest, start[c]);
     }
     return safe_until(0.0, start, duration_, heights(duration_));
   }

@@ -19,6 +19,9 @@ struct SeparationWatch {
   Motion motion_a;
   Motion motion_b;
   std::vector<Touch> held;  ///< touches whose gaps are held; their corners are not asked about
+  /// What comes nearer than this part of `TurningPair::nearest`, or of what it is away at the start
+  /// if that is less, strikes.
+  double least = 0.9375;
 
   /// The last time within `duration`, s, up to which no corner that is not held comes as near as it
   /// may not; `duration` where none does.

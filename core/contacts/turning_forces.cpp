@@ -4,6 +4,7 @@
 #include "core/contacts/nonnegative_solve.hpp"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <Eigen/QR>
 
 #include <algorithm>
@@ -26,6 +27,36 @@ constexpr int rays_of_cone = 16;
 constexpr int most_sweeps = 2000;
 constexpr double settled = 1e-10;
 
+/// K x = -q where K may be singular, by a K that is not and what is left, again and again: several
+/// times as fast as an orthogonal decomposition. Of redundant forces it finds some. False: that
+/// does not get there, or is not worth it.
+bool solve_damped(const MatrixXd& K, const VectorXd& q, double load, VectorXd& x) {
+  constexpr Index worth_it = 32;
+  constexpr double damping = 1e-8;  // of the largest element
+  constexpr int most_rounds = 6;
+  constexpr double solved = 1e-14;  // of the load
+  if (K.rows() < worth_it) {
+    return false;
+  }
+  MatrixXd damped = K;
+  damped.diagonal().array() += damping * K.cwiseAbs().maxCoeff();
+  const Eigen::PartialPivLU<MatrixXd> decomposition(damped);
+  x = VectorXd::Zero(q.size());
+  VectorXd rest = -q;
+  for (int round = 0; round < most_rounds; ++round) {
+    x += decomposition.solve(rest);
+    rest = -(K * x + q);
+    const double off = rest.lpNorm<Eigen::Infinity>();
+    if (off <= solved * load) {
+      return true;
+    }
+    if (!std::isfinite(off)) {
+      return false;
+    }
+  }
+  return false;
+}
+
 bool pushes(const FrictionChoice& c) { return c.does != Does::opens; }
 bool rubs(const FrictionChoice& c) { return c.does == Does::slides || c.does == Does::begins; }
 
@@ -33,6 +64,7 @@ bool rubs(const FrictionChoice& c) { return c.does == Does::slides || c.does == 
 
 TurningForces::TurningForces(const TurningState& state) : state_(state) {
   for (std::size_t i = 0; i < state.bodies.size(); ++i) {
+    free_ += moves(state.bodies[i]) ? 1 : 0;
     load_ = std::max(
         load_, state.loads[i].linear.norm() + state.loads[i].angular.norm() * state.radius[i]);
   }
@@ -97,7 +129,8 @@ double TurningForces::gap_acceleration(std::size_t k, std::span<const Twist> v) 
   return now_[k].normal.dot(acceleration(k, v) - now_[k].bias) + now_[k].normal_bias;
 }
 
-TurningForces::Solution TurningForces::solve(std::span<const FrictionChoice> choices) {
+TurningForces::Solution TurningForces::solve(std::span<const FrictionChoice> choices,
+                                             bool least_norm) {
   std::vector<Line> asks;
   std::vector<Line> gives;
   for (std::size_t k = 0; k < choices.size(); ++k) {
@@ -133,12 +166,15 @@ TurningForces::Solution TurningForces::solve(std::span<const FrictionChoice> cho
   if (n == 0) {
     return found;
   }
-  Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
-  decomposition.setThreshold(rank_threshold);
-  decomposition.compute(K);
   ++solves_;
-  VectorXd x = decomposition.solve(-q);
-  x -= decomposition.solve(K * x + q);
+  VectorXd x;
+  if (least_norm || !solve_damped(K, q, load_, x)) {
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
+    decomposition.setThreshold(rank_threshold);
+    decomposition.compute(K);
+    x = decomposition.solve(-q);
+    x -= decomposition.solve(K * x + q);
+  }
   found.residual = (K * x + q).lpNorm<Eigen::Infinity>() / load_;
   for (Index c = 0; c < n; ++c) {
     const Line& column = gives[static_cast<std::size_t>(c)];
@@ -227,8 +263,12 @@ double TurningForces::nearest_in_cones(std::span<const FrictionChoice> choices, 
 }
 
 TurningForces::Solution TurningForces::verified(std::span<const FrictionChoice> choices) {
-  Solution found = solve(choices);
+  Solution found = solve(choices, !several());
   found.violation = cone_violation(choices, found);
+  if (found.violation > FrictionForces::solve_roundoff && several()) {
+    found = solve(choices);
+    found.violation = cone_violation(choices, found);
+  }
   if (found.violation > FrictionForces::solve_roundoff && found.residual < 1e-9) {
     Solution other = found;
     const double off = nearest_in_cones(choices, other);

@@ -46,8 +46,11 @@ class TurningForces {
   [[nodiscard]] int solves() const { return solves_; }
   [[nodiscard]] const std::vector<Touch>& touches() const { return state_.touches; }
 
-  /// Forces and accelerations, not verified.
-  [[nodiscard]] Solution solve(std::span<const FrictionChoice> choices);
+  /// Forces and accelerations, not verified. `least_norm`: of all that do the same; otherwise some
+  /// of them, which is faster where many touch.
+  [[nodiscard]] Solution solve(std::span<const FrictionChoice> choices, bool least_norm = true);
+  /// Whether more than two bodies are free to move.
+  [[nodiscard]] bool several() const { return free_ > 2; }
   /// The same with its `violation`: forces within the cones are looked for where those of least
   /// norm are not.
   [[nodiscard]] Solution verified(std::span<const FrictionChoice> choices);
@@ -81,6 +84,7 @@ class TurningForces {
   std::vector<std::array<Line, 3>> lines_;  ///< by touch: normal and two tangents
   std::vector<double> weight_;              ///< by touch: what a unit of its normal force gives
   double load_ = 0.0;
+  int free_ = 0;
   int solves_ = 0;
 };
 

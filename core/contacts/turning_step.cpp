@@ -26,6 +26,14 @@ constexpr int bisections = 48;
 constexpr int most_halvings = 40;
 /// Held gaps are off by no more than this part of what they are.
 constexpr double drift = 0.1;
+/// Of the gap below which corners strike: along the motions that are integrated, and a little less
+/// once what they are off has been taken out, so that this hardly ever cuts them again.
+constexpr double strike_gap = 0.9375;
+constexpr double bent_gap = 0.875;
+constexpr int few_cuts = 4;
+
+/// What slides back has stopped: faster than this part of `slow_slip`.
+constexpr double reversed = 1e-6;
 
 /// What is this part of its size beyond a rim is beyond it.
 constexpr double over_rim = 1e-12;
@@ -62,16 +70,6 @@ Vector3 direction(const TouchNow& now, const Vector3& before, double slow) {
   return (d - now.normal * now.normal.dot(d)).normalized();
 }
 
-/// Slower than this, m/s, what slides goes on as it did: a small part of what a body gains that
-/// falls by its size. Directions of slower sliding change faster than steps can follow.
-double slow_slip(const TurningGroup& group) {
-  double size = 0.0;
-  for (std::size_t i = 0; i < group.bodies.size(); ++i) {
-    size = std::max(size, group.inertia[i].mass > 0.0 ? group.start.radius[i] : 0.0);
-  }
-  return 1e-5 * std::sqrt(TurningForces(group.start).load() * size);
-}
-
 std::vector<FrictionChoice> directed(const TurningMode& mode, const std::vector<TouchNow>& now,
                                      double slow) {
   std::vector<FrictionChoice> choices = mode.choices;
@@ -84,6 +82,16 @@ std::vector<FrictionChoice> directed(const TurningMode& mode, const std::vector<
   return choices;
 }
 
+/// Slower than this, m/s, what slides goes on as it did: a small part of what a body gains that
+/// falls by its size. Directions of slower sliding change faster than steps can follow.
+double slow_slip(const TurningGroup& group) {
+  double size = 0.0;
+  for (std::size_t i = 0; i < group.bodies.size(); ++i) {
+    size = std::max(size, group.inertia[i].mass > 0.0 ? group.start.radius[i] : 0.0);
+  }
+  return 1e-5 * std::sqrt(TurningForces(group.start).load() * size);
+}
+
 /// Contact forces as a force of the island.
 class ContactForce final : public Force {
  public:
@@ -93,7 +101,7 @@ class ContactForce final : public Force {
   void add(Instant, std::span<const BodyState> bodies, std::span<Wrench> wrenches) const override {
     const TurningState state = at_states(group_, bodies);
     TurningForces forces(state);
-    const auto found = forces.solve(directed(mode_, forces.now(), slow_));
+    const auto found = forces.solve(directed(mode_, forces.now(), slow_), !forces.several());
     std::size_t next = 0;
     for (std::size_t i = 0; i < group_.bodies.size(); ++i) {
       if (group_.inertia[i].mass > 0.0) {
@@ -143,20 +151,29 @@ class Step {
     if (!integrate(longest)) {
       return std::move(step_);
     }
-    for (std::size_t p = 0; p < group_.pairs.size(); ++p) {
-      const double until = strike_time(p, step_.duration);
-      if (until < step_.duration) {
-        step_.duration = until;
-        step_.end = TurningEnd::strike;
-        step_.pair = p;
-      }
-    }
+    cut_at_strikes(raw_, strike_gap);
     end_mode();
     finish();
     return std::move(step_);
   }
 
  private:
+  /// Ends the step where a pair strikes on these motions, by free body; whether one does. `least`:
+  /// of what strikes.
+  bool cut_at_strikes(const std::vector<Motion>& motions, double least) {
+    bool strikes = false;
+    for (std::size_t p = 0; p < group_.pairs.size(); ++p) {
+      const double until = strike_time(p, motions, least, step_.duration);
+      if (until < step_.duration) {
+        step_.duration = until;
+        step_.end = TurningEnd::strike;
+        step_.pair = p;
+        strikes = true;
+      }
+    }
+    return strikes;
+  }
+
   [[nodiscard]] std::vector<BodyState> free_states(double s) const {
     std::vector<BodyState> states;
     for (const Motion& motion : raw_) {
@@ -215,9 +232,10 @@ class Step {
     return true;
   }
 
-  [[nodiscard]] double strike_time(std::size_t p, double duration) const {
+  [[nodiscard]] double strike_time(std::size_t p, const std::vector<Motion>& motions, double least,
+                                   double duration) const {
     const TurningPair& pair = group_.pairs[p];
-    SeparationWatch watch{pair, motion_of(pair.a), motion_of(pair.b), {}};
+    SeparationWatch watch{pair, motion_of(pair.a, motions), motion_of(pair.b, motions), {}, least};
     for (std::size_t k = 0; k < group_.start.touches.size(); ++k) {
       const Touch& touch = group_.start.touches[k];
       if (touch.pair == p && mode_.choices[k].does != Does::opens) {
@@ -229,10 +247,10 @@ class Step {
     return apart ? duration : watch.strike_time(duration);
   }
 
-  [[nodiscard]] Motion motion_of(std::size_t i) const {
+  [[nodiscard]] Motion motion_of(std::size_t i, const std::vector<Motion>& motions) const {
     for (std::size_t k = 0; k < free_.size(); ++k) {
       if (free_[k] == i) {
-        return raw_[k];
+        return motions[k];
       }
     }
     Motion motion = Motion::at_rest(t_, group_.start.states[i].pose);
@@ -269,7 +287,7 @@ class Step {
   /// Whether what slides, slides back.
   [[nodiscard]] bool stops(const FrictionChoice& c, const TouchNow& now) const {
     return (c.does == Does::slides || c.does == Does::begins) && !c.direction.isZero(0.0) &&
-           c.direction.dot(now.velocity) < -1e-6 * slow_;
+           c.direction.dot(now.velocity) < -reversed * slow_;
   }
 
   /// Whether something is held beyond the rim of what it is on: by more than roundoff, so that it
@@ -315,13 +333,32 @@ class Step {
 
   // --- What is told -----------------------------------------------------------------------------
 
+  /// What is told is bent to the states at its end, and is watched as it is told: what is taken out
+  /// there may bring corners nearer, the more the more bodies hang together.
   void finish() {
-    const double h = step_.duration;
     step_.states = group_.start.states;
     step_.motions.assign(group_.bodies.size(), {});
-    if (!(h > 0.0)) {
-      return;
+    for (int round = 0; round < most_halvings && step_.duration > 0.0; ++round) {
+      std::vector<Motion> bent = bend();
+      if (!cut_at_strikes(bent, bent_gap)) {
+        raw_ = std::move(bent);
+        for (std::size_t k = 0; k < free_.size(); ++k) {
+          step_.motions[free_[k]] = raw_[k];
+        }
+        return book();
+      }
+      if (round >= few_cuts) {
+        step_.duration *= 0.5;
+        step_.end = TurningEnd::step;
+      }
     }
+    step_.duration = 0.0;
+  }
+
+  /// The motions of free bodies, as they end where nothing is off; sets the states there.
+  std::vector<Motion> bend() {
+    const double h = step_.duration;
+    std::vector<Motion> bent = raw_;
     TurningState end = at_states(group_, free_states(h));
     std::vector<char> held;
     for (const FrictionChoice& c : mode_.choices) {
@@ -335,11 +372,10 @@ class Step {
       BodyState& state = step_.states[i];
       state.pose = end.states[i].pose;
       state.twist = velocities[i];
-      raw_[k].duration = h;
-      bend_to(raw_[k], h, before_[k], state);
-      step_.motions[i] = raw_[k];
+      bent[k].duration = h;
+      bend_to(bent[k], h, before_[k], state);
     }
-    book();
+    return bent;
   }
 
   /// Power of the contact forces at 8 nodes, and the polynomials through it, integrated.
@@ -402,7 +438,7 @@ class Step {
     const TurningState state = at_states(group_, free_states(s));
     TurningForces forces(state);
     const auto choices = directed(mode_, forces.now(), slow_);
-    const auto found = forces.solve(choices);
+    const auto found = forces.solve(choices, !forces.several());
     for (std::size_t k = 0; k < state.touches.size(); ++k) {
       const Touch& touch = state.touches[k];
       const TouchNow& now = forces.now()[k];
@@ -438,6 +474,8 @@ class Step {
 };
 
 }  // namespace
+
+double turning_rest(const TurningGroup& group) { return 4.0 * reversed * slow_slip(group); }
 
 TurningStep turning_step(const TurningGroup& group, const TurningMode& mode, Stepper& stepper,
                          Instant t, double longest) {

@@ -62,6 +62,10 @@ struct TurningStep {
   std::int64_t evaluations = 0;
 };
 
+/// What slides slower than this, m/s, may be what has just stopped: a step that ends there ends a
+/// little after. Taken to slide on, it would stop again at once, and so without end.
+[[nodiscard]] double turning_rest(const TurningGroup& group);
+
 /// Goes on for at most `longest`, s, in the mode that was found: the stepper solves the
 /// index-reduced equations, contact forces being the last force of the island; what it is off the
 /// gaps is taken out at the end of the step, positions first and then velocities, and its motions

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -158,10 +159,13 @@ TEST_CASE("a collapse that is as good as over holds no ball in the air", "[accum
       ball("high", 0.3223983172974174, 1.0, "[0, 1.346493107653491, 0]",
            "[0.9452236659396526, -0.5946669101050519, 0.8950491986957052]", 188.88144978170737));
   tests::check_explained(sim.result.ledger);
-  const double height = sim.result.state[3].pose.position.y();
-  const bool fell = height < 1.0;
-  CAPTURE(sim.result.reason, height);
-  CHECK((fell || sim.result.status == RunStatus::stopped));
+  double lowest = 1e300;  // it bounces on the floor and comes up again
+  for (std::size_t k = 0; k < sim.trajectory.frame_times().size(); ++k) {
+    lowest = std::min(lowest, sim.trajectory.frame_state(k)[3].pose.position.y());
+  }
+  CAPTURE(sim.result.reason, lowest);
+  REQUIRE(sim.result.status == RunStatus::completed);
+  CHECK(lowest < 0.5);
 }
 
 TEST_CASE("a finite sequence of impacts is not called infinite", "[accumulation]") {

@@ -189,9 +189,11 @@ TEST_CASE("overhang of four boxes: stands at 0.999 of 25/24 of a length, tips at
     if (share < 1.0) {
       check_whole(sim, text);
     } else {
-      REQUIRE(sim.result.status == RunStatus::stopped);
-      CHECK(sim.result.reason.find("bodies that touch each other turn") != std::string::npos);
-      CHECK(sim.result.reason.find("allowed: ") != std::string::npos);
+      // They tip together; where that is followed no further the run says so.
+      const Quaternion& top = sim.result.state[4].pose.orientation;
+      CHECK((top * Vector3::UnitX()).y() < -1e-3);
+      CHECK((sim.result.status == RunStatus::completed ||
+             sim.result.reason.find("allowed: ") != std::string::npos));
     }
   }
 }

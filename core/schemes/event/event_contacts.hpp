@@ -65,7 +65,11 @@ class EventContacts {
   [[nodiscard]] bool could_be_supported(BodyIndex a, BodyIndex b, Instant t) const;
   [[nodiscard]] std::string unkept() const;
   [[nodiscard]] bool strike_group(const BodyPair& pair, double approach, Instant t);
-  void leave_at_rest(const EventModes::GroupImpact& impact, std::vector<Twist>& v) const;
+  void leave_at_rest(const EventModes::GroupImpact& impact, const Eigen::VectorXd& impulses,
+                     std::vector<Twist>& v) const;
+  static void return_as_struck(const EventModes::GroupImpact& impact,
+                               const Eigen::VectorXd& impulses, const std::vector<Twist>& struck,
+                               std::vector<Twist>& v);
   void tell_group(const EventModes::GroupImpact& impact, const Eigen::VectorXd& impulses,
                   std::span<const BodyState> before, const BodyPair& first, Instant t);
   void hand_on(const Event& first, double approach, std::vector<BodyIndex> bodies, Instant t);

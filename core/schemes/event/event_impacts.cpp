@@ -237,7 +237,7 @@ bool EventContacts::still_approaching(const Event& event, double approach, Insta
 
 /// What moves by less than roundoff of the fastest does not move.
 void EventContacts::leave_at_rest(const EventModes::GroupImpact& impact,
-                                  std::vector<Twist>& v) const {
+                                  const Eigen::VectorXd& impulses, std::vector<Twist>& v) const {
   double fastest = 0.0;
   for (const Twist& before : impact.velocities) {
     fastest = std::max(fastest, before.linear.norm());
@@ -264,6 +264,39 @@ void EventContacts::leave_at_rest(const EventModes::GroupImpact& impact,
     }
   }
   at_rest.undo_where_faster(struck, v);
+  return_as_struck(impact, impulses, struck, v);
+}
+
+/// What is slow among the fastest may not be among the two that strike: they leave as they were
+/// struck where their restitution would show the difference.
+void EventContacts::return_as_struck(const EventModes::GroupImpact& impact,
+                                     const Eigen::VectorXd& impulses,
+                                     const std::vector<Twist>& struck, std::vector<Twist>& v) {
+  const auto same = [&](std::size_t k) {
+    return v[k].linear == struck[k].linear && v[k].angular == struck[k].angular;
+  };
+  for (bool again = true; again;) {
+    again = false;
+    for (std::size_t r = 0; r < impact.system.rows.size(); ++r) {
+      const ContactRow& row = impact.system.rows[r];
+      const auto at = static_cast<Eigen::Index>(r);
+      if (!(impulses[at] > 0.0) || (same(row.a) && same(row.b))) {
+        continue;
+      }
+      const double returned = -impact.restitution[at] * impact.system.rate(row, impact.velocities);
+      const auto off = [&](const std::vector<Twist>& u) {
+        return std::abs(impact.system.rate(row, u) - returned);
+      };
+      const double speeds =
+          struck[row.a].linear.norm() + struck[row.a].angular.norm() * row.arm_a.norm() +
+          struck[row.b].linear.norm() + struck[row.b].angular.norm() * row.arm_b.norm();
+      if (off(v) > 16.0 * epsilon * speeds && off(v) > off(struck)) {
+        v[row.a] = struck[row.a];
+        v[row.b] = struck[row.b];
+        again = true;
+      }
+    }
+  }
 }
 
 /// A law that knows groups strikes all of them at once; false where there is no group, or the law
@@ -291,7 +324,7 @@ bool EventContacts::strike_group(const BodyPair& pair, double approach, Instant 
   if (impulses.size() == 0) {
     return false;
   }
-  leave_at_rest(impact, velocities);
+  leave_at_rest(impact, impulses, velocities);
   std::vector<BodyState> before;
   std::vector<BodyIndex> bodies;
   for (std::size_t k = 0; k < impact.bodies.size(); ++k) {

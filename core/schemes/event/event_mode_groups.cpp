@@ -1,5 +1,6 @@
 // Who is in touch with a group under `event-driven`, and what an impact finds there.
 
+#include "core/contacts/complementarity.hpp"
 #include "core/schemes/event/event_modes.hpp"
 #include "core/schemes/event/gathered_group.hpp"
 #include "core/schemes/event/mode_guards.hpp"
@@ -17,6 +18,25 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Of the speed along the normal that is rest: along a curved surface, too.
 constexpr double still_part = 1e-3;
+
+/// Where bodies rest on more points than they have ways to move, rates at these contradict each
+/// other by what the points are off, and no velocities make all of them nothing. What is left is
+/// then to press and not to part: what holds does not strike what draws away.
+void press_what_contradicts(const ContactSystem& held, std::span<const double> radius,
+                            std::vector<Twist>& v) {
+  double fastest = 0.0;
+  for (std::size_t k = 0; k < v.size(); ++k) {
+    fastest = std::max(fastest, v[k].linear.norm() + v[k].angular.norm() * radius[k]);
+  }
+  const Eigen::VectorXd left = held.rates(v);
+  if (left.size() == 0 || left.maxCoeff() <= 64.0 * epsilon * fastest) {
+    return;
+  }
+  const Complementarity pull = solve_complementarity(held.coupling(), -left);
+  if (pull.solved) {
+    held.push(-pull.x, v);
+  }
+}
 
 double finite_radius(const Shape& shape) {
   const double radius = bounding_radius(shape);
@@ -136,13 +156,16 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
       const bool struck = wish.impact && is_seed(a) && is_seed(b);
       const bool elsewhere =
           wish.turning ? least > slow || most < -slow : least < -slow || most > slow;
-      if (wish.impact ? least > slow || (wish.held_only && !joined && !struck) : elsewhere) {
+      const bool passes =
+          wish.impact ? least > slow || (wish.held_only && !joined && !struck) : elsewhere;
+      if (passes && !wish.near) {
         continue;  // an impact of its own, or parting
       }
       if (!found.has(j)) {
         add(j);
       }
       found.pairs.emplace_back(a, b);
+      found.passes.push_back(passes ? 1 : 0);
       const Vector3& n = manifold.normal;
       const double mu = run_.model.friction(a, b);
       const Vector3 drift = mu > 0.0 ? Vector3(belt(b, n) - belt(a, n)) : Vector3(Vector3::Zero());
@@ -223,6 +246,7 @@ void EventModes::still_hold(ContactGroup& group, GroupImpact& impact) const {
     }
   }
   held.project(impact.velocities);
+  press_what_contradicts(held, group.radius, impact.velocities);
 }
 
 EventModes::GroupImpact EventModes::impact_group(const BodyPair& pair, Instant t, bool all) {

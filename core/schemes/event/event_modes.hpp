@@ -41,6 +41,7 @@ class EventModes {
     bool held_only = false;                ///< impact: only what is held, and these two
     bool turning = false;                  ///< pairs of which some points are at rest, too
     bool turning_only = false;             ///< only if it turns
+    bool near = false;                     ///< what is in touch and not at rest, too
     /// What cannot go on otherwise may turn: the run would stop. What has turned may always.
     bool may_turn = false;
   };
@@ -143,9 +144,11 @@ class EventModes {
   [[nodiscard]] std::string why_not_turn(const Gathered& found, Instant t) const;
   void count_step(const Gathered& found, Instant t);
   void still_hold(ContactGroup& group, GroupImpact& impact) const;
+  [[nodiscard]] bool make_room(std::span<const BodyIndex> seeds, Instant t, Wish wish,
+                               Gathered& found, Turning& turning);
   void lift(Gathered& found, Turning& turning);
   void raise(Gathered& found, Turning& turning);
-  [[nodiscard]] bool has_room(const Gathered& found, Instant t);
+  [[nodiscard]] bool has_room(std::span<const BodyState> before, const Gathered& found, Instant t);
   [[nodiscard]] bool fly(const Gathered& found, const Turning& turning, Instant t,
                          const Adopt& adopt);
   void book_lift(const Gathered& found, Instant t);

@@ -15,7 +15,7 @@ inline namespace core {
 /// What a person can do about bodies that stay in touch: the end of a stop's reason.
 inline constexpr std::string_view part_them =
     "contact that lasts is kept where loads are constant and nothing turns, of one body that does "
-    "not turn on a face that is driven, or of one or two that turn while they touch; allowed: "
+    "not turn on a face that is driven, or of up to 24 that turn while they touch; allowed: "
     "bodies that start apart, a restitution of 1, another scheme, or a run that ends before "
     "(--duration)";
 

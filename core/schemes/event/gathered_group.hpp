@@ -16,6 +16,7 @@ struct EventModes::Gathered {
   std::vector<BodyIndex> bodies;  ///< by place in the group
   std::vector<BodyState> states;
   std::vector<std::pair<BodyIndex, BodyIndex>> pairs;  ///< by patch
+  std::vector<char> passes;  ///< by patch: it strikes, or parts; it is known only to stay clear of
   ContactGroup group;
   std::string refusal;
   std::optional<BodyIndex> driven;  ///< one of those that are

@@ -26,7 +26,7 @@ constexpr int most_short_steps = 500;
 /// A body that turns has so many steps in a frame at most.
 constexpr int most_steps = 1000;
 /// So many free bodies of a group may turn: forces of more are found too slowly.
-constexpr std::ptrdiff_t most_bodies = 2;
+constexpr std::ptrdiff_t most_bodies = 24;
 
 }  // namespace
 
@@ -51,18 +51,9 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
   const std::string flat = why_not_;
   Wish wish = asked;
   wish.turning = true;
-  Gathered found = gather(seeds, t, wish);
+  Gathered found;
   Turning turning;
-  why_not_ = found.refusal.empty() ? why_not_turn(found, t) : found.refusal;
-  if (why_not_.empty()) {
-    why_not_ = add_touches(found, turning);
-  }
-  if (!why_not_.empty()) {
-    return false;
-  }
-  lift(found, turning);
-  if (!has_room(found, t)) {
-    why_not_ = "a body turns, and another is too near to it";
+  if (!make_room(seeds, t, wish, found, turning)) {
     return false;
   }
   why_not_ = add_rims(found, turning);
@@ -81,7 +72,7 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
   }
   const double still =
       TurningForces(turning.group.start).load() * found.group.instant + 64.0 * epsilon * fastest;
-  turning.mode = turning_mode(turning.group.start, still);
+  turning.mode = turning_mode(turning.group.start, std::max(still, turning_rest(turning.group)));
   why_not_ = turning.mode.refusal;
   if (!why_not_.empty()) {
     return false;
@@ -119,6 +110,31 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
   run_.cost.right_hand_sides += turning.step.evaluations;
   carry_on(found, turning, t, adopt);
   return true;
+}
+
+/// Gathers what touches, with gaps that can be held. Where that brings one nearer to what passes
+/// by, this makes way, too.
+bool EventModes::make_room(std::span<const BodyIndex> seeds, Instant t, Wish wish, Gathered& found,
+                           Turning& turning) {
+  for (const bool near : {false, true}) {
+    wish.near = near;
+    found = gather(seeds, t, wish);
+    turning = {};
+    why_not_ = found.refusal.empty() ? why_not_turn(found, t) : found.refusal;
+    if (why_not_.empty()) {
+      why_not_ = add_touches(found, turning);
+    }
+    if (!why_not_.empty()) {
+      return false;
+    }
+    const std::vector<BodyState> before = found.states;
+    lift(found, turning);
+    if (has_room(before, found, t)) {
+      return true;
+    }
+  }
+  why_not_ = "a body turns, and another is too near to it";
+  return false;
 }
 
 /// Whether one of these has turned while it touched, now or before.
@@ -230,11 +246,11 @@ std::string EventModes::add_touches(Gathered& found, Turning& turning) const {
                      least_gap * predictor_.touching_gap(a, b)};
     const Vector3& middle = m.points[0].position;
     const Vector3 half = 0.5 * m.points[0].gap * m.normal;
-    if (m.face_of_a) {
+    if (m.face_of_a && found.passes[p] == 0) {
       pair.planes_a.push_back(face_feature(run_.model.shape(a), at_a.to_body(middle - half),
                                            at_a.orientation.conjugate() * m.normal));
     }
-    if (m.face_of_b) {
+    if (m.face_of_b && found.passes[p] == 0) {
       pair.planes_b.push_back(face_feature(run_.model.shape(b), at_b.to_body(middle + half),
                                            at_b.orientation.conjugate() * -m.normal));
     }
@@ -279,7 +295,8 @@ void EventModes::lift(Gathered& found, Turning& turning) {
   raise(found, turning);
   std::erase_if(start.touches, [&](const Touch& touch) {
     const TouchNow now = look_at(touch, start.states[touch.a], start.states[touch.b]);
-    return std::abs(now.normal.dot(now.velocity)) > found.group.patches[touch.pair].rest_speed;
+    return found.passes[touch.pair] != 0 ||
+           std::abs(now.normal.dot(now.velocity)) > found.group.patches[touch.pair].rest_speed;
   });
 }
 
@@ -287,9 +304,11 @@ void EventModes::raise(Gathered& found, Turning& turning) {
   TurningState& start = turning.group.start;
   const std::vector<char> all(start.touches.size(), 1);
   std::vector<double> missing(turning.group.pairs.size(), 0.0);
-  for (const Touch& touch : start.touches) {
+  for (Touch& touch : start.touches) {
     const double nearest = turning.group.pairs[touch.pair].nearest;
-    if (touch.gap < 0.5 * nearest) {
+    if (found.passes[touch.pair] != 0) {
+      touch.gap = std::max(touch.gap, 0.0);
+    } else if (touch.gap < 0.5 * nearest) {
       missing[touch.pair] = std::max(missing[touch.pair], nearest - touch.gap);
     }
   }
@@ -311,25 +330,29 @@ void EventModes::raise(Gathered& found, Turning& turning) {
   }
 }
 
-/// Whether bodies whose gaps were made larger stay clear of what is no part of the group.
-bool EventModes::has_room(const Gathered& found, Instant t) {
+/// Whether bodies whose gaps were made larger stay clear of all others: those of the group, too,
+/// that they do not rest on.
+bool EventModes::has_room(std::span<const BodyState> before, const Gathered& found, Instant t) {
   std::vector<BodyIndex> near;
   for (std::size_t k = 0; k < found.bodies.size(); ++k) {
     const BodyIndex i = found.bodies[k];
-    const Pose& before = motions_.now(i).pose;
-    const Pose& after = found.states[k].pose;
-    if (!run_.model.is_free(i) || (before.position == after.position &&
-                                   before.orientation.coeffs() == after.orientation.coeffs())) {
+    const Pose& was = before[k].pose;
+    const Pose& is = found.states[k].pose;
+    if (!run_.model.is_free(i) ||
+        (was.position == is.position && was.orientation.coeffs() == is.orientation.coeffs())) {
       continue;
     }
     near.clear();
     predictor_.solids_near(i, near);
     for (const BodyIndex j : near) {
+      const std::size_t place = found.place(j);
+      const bool here = place < found.bodies.size();
+      const Pose other_was = here ? before[place].pose : motions_.at(j, t).pose;
+      const Pose other_is = here ? found.states[place].pose : other_was;
       const Shape& own = run_.model.shape(i);
       const Shape& other = run_.model.shape(j);
-      const Pose there = found.has(j) ? found.states[found.place(j)].pose : motions_.at(j, t).pose;
-      const double gap = run_.detector.overlap(own, after, other, there).gap;
-      if (gap < 0.0 && gap < run_.detector.overlap(own, before, other, there).gap) {
+      const double gap = run_.detector.overlap(own, is, other, other_is).gap;
+      if (gap < 0.0 && gap < run_.detector.overlap(own, was, other, other_was).gap) {
         return false;
       }
     }
