@@ -34,9 +34,8 @@ bool EventContacts::settle(std::span<const BodyIndex> seeds, Instant t,
                            const EventModes::Wish& wish) {
   const auto adopt = [this](BodyIndex ball) {
     const auto found = touching_.find(ball);
-    return found == touching_.end()
-               ? Instant::never()
-               : std::exchange(found->second.contact_begins, Instant::never());
+    return found == touching_.end() ? Instant::never()
+                                    : std::exchange(found->second.contact_begins, Instant::never());
   };
   return modes_.settle(seeds, t, adopt, wish);
 }
