@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the report shows first, comes first; others follow in alphabetical order.
+/// The experiments that the report shows first; others follow in alphabetical order.
 constexpr std::array<std::string_view, 6> report_order = {
     "overview", "penetration", "energy-drift", "bat", "jiggle", "spinning-box"};
 

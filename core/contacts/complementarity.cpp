@@ -14,7 +14,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// W x = -q on the rows that are pressed, 0 elsewhere.
+/// Solves W x = -q on the rows that are pressed; x is 0 elsewhere.
 VectorXd on_rows(const MatrixXd& W, const VectorXd& q, const std::vector<Index>& pressed) {
   const auto n = static_cast<Index>(pressed.size());
   MatrixXd part(n, n);
@@ -34,8 +34,9 @@ VectorXd on_rows(const MatrixXd& W, const VectorXd& q, const std::vector<Index>&
   return x;
 }
 
-/// Below which W x + q is none: `tolerance` of the largest q, and the roundoff of its terms, which
-/// between bodies of very different masses are far larger than what they add up to.
+/// By row, the size below which W x + q counts as zero: `tolerance` of the largest q, and the
+/// roundoff of its terms. Between bodies of very different masses the terms are far larger than
+/// their sum.
 VectorXd none(const MatrixXd& W, const VectorXd& q, const VectorXd& x, double tolerance) {
   constexpr double roundings = 64.0 * std::numeric_limits<double>::epsilon();
   const double rate = q.cwiseAbs().maxCoeff();
@@ -92,7 +93,7 @@ Complementarity solve_complementarity(const MatrixXd& W, const VectorXd& q, doub
     while (answer.solves < most) {
       const VectorXd next = on_rows(W, q, pressed);
       ++answer.solves;
-      // As far towards it as nothing pulls.
+      // Goes towards it as far as no row pulls.
       double share = 1.0;
       for (const Index i : pressed) {
         if (next[i] <= 0.0) {

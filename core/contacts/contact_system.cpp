@@ -1,6 +1,6 @@
 #include "core/contacts/contact_system.hpp"
 
-#include <Eigen/QR>
+#include "core/contacts/least_norm.hpp"
 
 #include <cmath>
 #include <limits>
@@ -80,9 +80,7 @@ void ContactSystem::project(std::vector<Twist>& v) const {
   if (rows.empty()) {
     return;
   }
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-  decomposition.setThreshold(1e-12);  // rows that the others imply
-  decomposition.compute(coupling());
+  const LeastNorm decomposition(coupling());
   for (int k = 0; k < 2; ++k) {
     push(-decomposition.solve(rates(v)), v);
   }

@@ -25,7 +25,7 @@ CurvedSlip curved_slip(const Vector3& slip, const Vector3& pull, double brake, d
   speed[0] = slip.norm();
   d[0] = slip / speed[0];
   for (int k = 0; k < order; ++k) {
-    // u' = pull - brake d, speed^2 = u.u, speed d = u, each by its coefficients.
+    // Solves u' = pull - brake d, speed^2 = u.u, speed d = u by their coefficients.
     u[at(k + 1)] = ((k == 0 ? pull : Vector3(Vector3::Zero())) - brake * d[at(k)]) / (k + 1.0);
     double square = 0.0;
     for (int i = 0; i <= k + 1; ++i) {
@@ -42,7 +42,7 @@ CurvedSlip curved_slip(const Vector3& slip, const Vector3& pull, double brake, d
     d[at(k + 1)] = rest / speed[0];
   }
   CurvedSlip curve;
-  // It cannot stop within half of this.
+  // The body cannot stop within half of this time.
   curve.duration = std::min(at_most, 0.5 * speed[0] / (brake + pull.norm()));
   for (int k = order - 1; k <= order; ++k) {
     const double size = std::max(d[at(k)].norm(), std::abs(speed[at(k)]) / speed[0]);

@@ -13,9 +13,9 @@ namespace {
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// Accelerations below this part of the largest load are roundoff of the solve.
 constexpr double solve_roundoff = 1e-10;
-/// Roundings of a solve and of what it is put in.
+/// Roundings of a solve, and of the sums that use its result.
 constexpr double solve_epsilons = 64.0;
-/// Velocities below this part of what was projected are roundoff of the projection.
+/// Velocities below this part of the projected ones are roundoff of the projection.
 constexpr double project_roundoff = 64.0 * epsilon;
 
 double largest_load(const ContactGroup& group) {
@@ -29,7 +29,7 @@ double largest_load(const ContactGroup& group) {
 
 double speed(const Twist& v, double radius) { return v.linear.norm() + v.angular.norm() * radius; }
 
-/// One group while it is looked at.
+/// The search for the flat mode of one group.
 class Attempt {
  public:
   Attempt(const ContactGroup& group, const FlatModeOptions& options)
@@ -57,7 +57,7 @@ class Attempt {
     return false;
   }
 
-  /// Rows of the points at rest to each other.
+  /// Collects a row for each point at which two bodies are at rest relative to each other.
   bool gather() {
     all_.bodies = group_.bodies;
     for (std::size_t p = 0; p < group_.patches.size(); ++p) {
@@ -81,7 +81,7 @@ class Attempt {
     return true;
   }
 
-  /// Who presses; accelerations with contact forces.
+  /// Finds the contacts that press, and the accelerations with their forces.
   bool accelerate() {
     if (all_.rows.empty()) {
       return refuse("nothing stays in touch");
@@ -113,8 +113,8 @@ class Attempt {
       }
       turning.setZero();
     }
-    // A patch whose points accelerate apart opens. What a light body is pressed with from both
-    // sides accelerates it by the roundoff of that, which may be more than the loads'.
+    // A patch whose points accelerate apart opens. A light body that is squeezed from both sides
+    // accelerates by the roundoff of these forces, which may be more than that of the loads.
     const Eigen::VectorXd squeezed = W.cwiseAbs() * forces.x;
     std::fill(mode_.kept.begin(), mode_.kept.end(), char{0});
     for (std::size_t r = 0; r < of_row_.size(); ++r) {
@@ -143,14 +143,14 @@ class Attempt {
     return system;
   }
 
-  /// What is kept loses its velocity along the normal.
+  /// Bodies in patches that are kept lose their relative velocity along the normal.
   bool slow_down() {
     std::vector<char> pressed = mode_.kept;
     for (std::size_t p = 0; p < pressed.size() && !options_.unite; ++p) {
       pressed[p] = mode_.kept[p] != 0 && mode_.pressing[p] > 0.0 ? 1 : 0;
     }
     rows_of(pressed).project(mode_.velocities);
-    // Touching without pressing: kept as long as it does not move.
+    // A patch that touches without pressing is kept as long as it does not move.
     for (std::size_t r = 0; r < of_row_.size(); ++r) {
       const std::size_t p = of_row_[r];
       if (pressed[p] == 0 &&
@@ -167,7 +167,7 @@ class Attempt {
     return true;
   }
 
-  /// Loads, arms and normals stay what they are.
+  /// Checks that loads, arms and normals are constant while the mode lasts.
   bool hold_still() {
     for (std::size_t i = 0; i < group_.bodies.size(); ++i) {
       if (!moves(group_.bodies[i])) {
@@ -197,7 +197,8 @@ class Attempt {
     return true;
   }
 
-  /// Steadily about the normal of its only patch, on something that does not turn.
+  /// Whether body i spins steadily about the normal of its only patch, on a body that does not
+  /// turn.
   [[nodiscard]] bool spins(std::size_t i) const {
     const Vector3& w = mode_.velocities[i].angular;
     int patches = 0;
@@ -218,8 +219,8 @@ class Attempt {
     return patches == 1 && group_.loads[i].angular.norm() <= 64.0 * epsilon * w.squaredNorm();
   }
 
-  /// Roundoff of what was projected to nothing is nothing; a small part of a slow way along a
-  /// contact is none: without it, the way would lead into the contact or out of it.
+  /// Sets to zero what is roundoff of a projection to zero. Small components of a slow velocity
+  /// along a contact are kept: without them it would lead into the contact, or out of it.
   void clean() {
     const std::vector<Twist> velocities = mode_.velocities;
     const std::vector<Twist> accelerations = mode_.accelerations;

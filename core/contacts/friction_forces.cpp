@@ -1,10 +1,10 @@
 #include "core/contacts/friction_forces.hpp"
 
 #include "core/circular.hpp"
+#include "core/contacts/least_norm.hpp"
 #include "core/contacts/nonnegative_solve.hpp"
 
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <array>
@@ -20,9 +20,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Rows that the others imply.
-constexpr double rank_threshold = 1e-12;
-/// Of a cone: nowhere farther from it than 2 % of its width.
+/// Rays that stand for a cone: it is nowhere farther from their hull than 2 % of its width.
 constexpr int rays_of_cone = 16;
 
 void align(FrictionTouch& t, const Vector3& along) {
@@ -32,7 +30,7 @@ void align(FrictionTouch& t, const Vector3& along) {
   t.t2 = t.n.cross(t.t1);
 }
 
-/// Both bodies of a touch, with the sign of what acts on them.
+/// Both bodies of a touch, with the sign of the force on them.
 std::array<std::pair<std::size_t, double>, 2> sides(const FrictionTouch& t) {
   return {{{t.a, -1.0}, {t.b, 1.0}}};
 }
@@ -65,7 +63,7 @@ bool FrictionForces::can_turn(std::size_t i) const {
   return !group_.bodies[i].inverse_inertia.isZero(0.0);
 }
 
-/// From the origin of body i, one of touch t, to where it touches.
+/// Arm from the origin of body i, which is one of touch t, to the point where it touches.
 Vector3 FrictionForces::arm(const FrictionTouch& t, std::size_t i, const Vector3& point) const {
   if (group_.round[i] != 0) {
     return t.n * (i == t.a ? group_.radius[i] : -group_.radius[i]);
@@ -82,7 +80,7 @@ Vector3 FrictionForces::relative(const FrictionTouch& t, const std::vector<Twist
   return at(t.b) - at(t.a);
 }
 
-/// J of the relative motion along d.
+/// Row of J for the relative motion along d.
 VectorXd FrictionForces::row(const FrictionTouch& t, const Vector3& d) const {
   VectorXd out = VectorXd::Zero(unknowns_);
   const Vector3& point = group_.patches[t.patch].manifold.points[0].position;
@@ -156,7 +154,7 @@ std::vector<Vector3> FrictionForces::rays(const FrictionTouch& t, const Friction
   std::vector<Vector3> out;
   for (int k = 0; k < rays_of_cone; ++k) {
     const double angle = 2.0 * M_PI * k / rays_of_cone;
-    // What lies along an axis does so exactly.
+    // Rays along an axis are so exactly.
     const double c1 = k % 4 == 0 ? (k == 0 ? 1.0 : k == 8 ? -1.0 : 0.0) : cosine(angle);
     const double c2 = k % 4 == 0 ? (k == 4 ? 1.0 : k == 12 ? -1.0 : 0.0) : sine(angle);
     out.emplace_back(t.n + t.mu * (c1 * t.t1 + c2 * t.t2));
@@ -169,7 +167,7 @@ std::optional<FrictionForces::Solution> FrictionForces::solve(
   for (std::size_t k = 0; k < choices.size(); ++k) {
     const bool slides = choices[k].does == Does::slides || choices[k].does == Does::begins;
     if (slides && std::isinf(touches_[k].mu)) {
-      return std::nullopt;  // what is rough does not slide
+      return std::nullopt;  // without a bound of friction nothing slides
     }
   }
   for (int round = 0; round < 3; ++round) {
@@ -181,7 +179,8 @@ std::optional<FrictionForces::Solution> FrictionForces::solve(
   return std::nullopt;
 }
 
-/// The cones' rays along the forces that came nearest; false where they are already.
+/// Turns the rays of the cones towards the forces that came nearest; false if they are there
+/// already.
 bool FrictionForces::realign(const std::vector<FrictionChoice>& choices) {
   bool turned = false;
   for (std::size_t k = 0; k < touches_.size(); ++k) {
@@ -196,7 +195,7 @@ bool FrictionForces::realign(const std::vector<FrictionChoice>& choices) {
   return turned;
 }
 
-/// Nothing where the constraints contradict each other.
+/// Accelerations that the constraints allow; nothing if they contradict each other.
 std::optional<FrictionForces::Allowed> FrictionForces::allowed(
     const std::vector<FrictionChoice>& choices) const {
   const Constraints held = constraints(choices, group_.velocities);
@@ -204,19 +203,12 @@ std::optional<FrictionForces::Allowed> FrictionForces::allowed(
   if (held.rows.rows() == 0 || unknowns_ == 0) {
     return allowed;
   }
-  Eigen::CompleteOrthogonalDecomposition<MatrixXd> by_rows;
-  by_rows.setThreshold(rank_threshold);
-  by_rows.compute(held.rows);
-  allowed.start = by_rows.solve(-held.driven);
+  allowed.start = LeastNorm(held.rows).solve(-held.driven);
   if ((held.rows * allowed.start + held.driven).lpNorm<Eigen::Infinity>() >
       solve_roundoff * load_) {
     return std::nullopt;
   }
-  Eigen::ColPivHouseholderQR<MatrixXd> by_columns;
-  by_columns.setThreshold(rank_threshold);
-  by_columns.compute(held.rows.transpose());
-  const MatrixXd all = by_columns.householderQ() * MatrixXd::Identity(unknowns_, unknowns_);
-  allowed.free = all.rightCols(unknowns_ - by_columns.rank());
+  allowed.free = null_space(held.rows);
   return allowed;
 }
 
@@ -323,10 +315,7 @@ void FrictionForces::slow_down(const std::vector<FrictionChoice>& choices,
     if (held.rates.isZero(0.0)) {
       return;
     }
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> by_rows;
-    by_rows.setThreshold(rank_threshold);
-    by_rows.compute(held.rows);
-    const VectorXd z = by_rows.solve(-held.rates);
+    const VectorXd z = LeastNorm(held.rows).solve(-held.rates);
     for (std::size_t i = 0; i < group_.bodies.size(); ++i) {
       const Twist change = scaled(i, z);
       velocities[i].linear += change.linear;

@@ -18,13 +18,13 @@ using Touch = FrictionTouch;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double solve_roundoff = FrictionForces::solve_roundoff;
-/// Velocities below this part of the fastest are roundoff of the projection.
+/// Velocities below this part of the fastest one are roundoff of the projection.
 constexpr double project_roundoff = 64.0 * epsilon;
-/// All ways are tried up to here: 3^6.
+/// Up to so many touches all combinations are tried: 3^6.
 constexpr std::size_t most_touches = 6;
 constexpr int most_turns = 50;  ///< of the direction in which something begins to slide
 
-/// One group while it is looked at: proposes, and asks `FrictionForces` to verify.
+/// The search for the mode of one group: proposes, and asks `FrictionForces` to verify.
 class Attempt {
  public:
   Attempt(const ContactGroup& group, const FlatModeOptions& options)
@@ -64,7 +64,7 @@ class Attempt {
     return false;
   }
 
-  /// Touches, and what must not turn.
+  /// Collects the touches, and the bodies that must not turn.
   bool gather() {
     for (std::size_t i = 0; i < group_.bodies.size(); ++i) {
       Vector3& w = mode_.velocities[i].angular;
@@ -142,7 +142,7 @@ class Attempt {
     return std::nullopt;
   }
 
-  /// With so many changes among the touches from `k` on.
+  /// Tries all choices with so many changes among the touches from `k` on.
   std::optional<Solution> change(std::vector<Choice>& choices, std::size_t k, std::size_t changes) {
     if (changes == 0) {
       return attempt(choices);
@@ -164,7 +164,7 @@ class Attempt {
     return change(choices, k + 1, changes);
   }
 
-  /// What begins to slide does so where it then goes.
+  /// Finds the directions in which touches begin to slide: along their own acceleration.
   std::optional<Solution> attempt(std::vector<Choice> choices) {
     const auto begins = [](const Choice& c) { return c.does == Does::begins; };
     if (std::none_of(choices.begin(), choices.end(), begins)) {
@@ -233,8 +233,7 @@ class Attempt {
     }
   }
 
-  /// Roundoff of what was solved for to be nothing is nothing; a small part of a slow
-  /// way along a contact is none.
+  /// Sets roundoff of a solution to zero, but where a contact would then move faster.
   void clean(const std::vector<Choice>& choices) {
     const std::vector<Twist> velocities = mode_.velocities;
     const std::vector<Twist> accelerations = mode_.accelerations;
@@ -265,7 +264,7 @@ class Attempt {
     held.undo_where_faster(accelerations, mode_.accelerations);
   }
 
-  /// What a touch does from here on, and how long it slides.
+  /// Notes what a touch does from here on, and how long it slides.
   void follow(const Touch& t, const Choice& choice) {
     const GroupPatch& patch = group_.patches[t.patch];
     const Vector3 v = mode_.velocities[t.b].linear - mode_.velocities[t.a].linear;
@@ -288,7 +287,7 @@ class Attempt {
     a = forces_.relative(t, mode_.accelerations);
     a -= t.n * t.n.dot(a);
     const double along = a.dot(choice.direction);
-    // Nearly stopped, it is on the line on which it stops.
+    // A body that has nearly stopped is on the line on which it stops.
     const bool slow = t.slip.norm() <= 128.0 * still();
     if (!slow && (a - along * choice.direction).norm() > solve_roundoff * load_) {
       mode_.curved = true;
@@ -308,7 +307,7 @@ class Attempt {
   FlatMode mode_;
 };
 
-/// Whether nothing slides or would: friction has nothing to do.
+/// Whether no touch slides or would: friction has no work to do.
 bool idle(const ContactGroup& group, const FlatMode& mode) {
   double load = 0.0;
   for (const Twist& l : group.loads) {

@@ -17,9 +17,9 @@ namespace {
 using Vector2 = Eigen::Vector2d;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// A direction that turns by less than this part of a radian over its sliding is kept.
+/// A direction that turns by fewer radians than this while the body slides is kept.
 constexpr double straight = 1e-13;
-/// Sliding that is left of what there was, when it is finished on a straight line.
+/// Part of the first sliding speed below which the rest is a straight line.
 constexpr double nearly_stopped = 1e-12;
 constexpr int most_phases = 16;
 constexpr int most_steps = 100000;
@@ -60,7 +60,7 @@ class Routh {
   /// Rates of u and p with the normal impulse, while the tangential one is f times it.
   [[nodiscard]] Vector3 push(const Vector2& f) const { return Vector3(1.0, f[0], f[1]); }
 
-  /// Takes what is left of the sliding: all of it, or roundoff.
+  /// Ends the sliding: what is left of it is roundoff, or all of it goes at once.
   void hold_still() {
     const Vector2 left = course_.u.tail<2>();
     const Vector2 f = -(W_.block<2, 2>(1, 1).inverse() * left);
@@ -71,13 +71,13 @@ class Routh {
     course_.u.tail<2>().setZero();
   }
 
-  /// By friction without bound sliding stops before anything is pressed.
+  /// Friction without a bound stops the sliding before anything is pressed.
   void stop_at_once() {
     hold_still();
     over_ = course_.u[0] >= 0.0;
   }
 
-  /// At rest along the surface: friction holds, or something begins to slide.
+  /// At rest along the surface: either friction holds, or sliding begins.
   void stopped() {
     const Vector2 hold = -(W_.block<2, 2>(1, 1).inverse() * W_.block<2, 1>(1, 0));
     if (hold.norm() <= mu_) {
@@ -89,7 +89,7 @@ class Routh {
     fail();
   }
 
-  /// Where it slides from rest: along what friction leaves of W_tn.
+  /// Direction in which sliding begins from rest: along the part of W_tn that friction leaves.
   [[nodiscard]] std::optional<Vector2> leaving() const {
     const auto pull = [&](double angle) -> Vector2 {
       const Vector2 d(cosine(angle), sine(angle));
@@ -125,7 +125,7 @@ class Routh {
     return std::nullopt;
   }
 
-  /// Whether sliding as it does now does not turn.
+  /// Whether the present direction of sliding does not turn.
   [[nodiscard]] bool keeps_direction() const {
     const Vector2 d = course_.u.tail<2>().normalized();
     const Vector2 rate = (W_ * push(-mu_ * d)).tail<2>();
@@ -147,7 +147,7 @@ class Routh {
     turn();
   }
 
-  /// On a straight line in p, at most for `most`.
+  /// Goes on a straight line in p, at most for `most`.
   void along(const Vector3& p, double most, bool sticks) {
     const Vector3 rate = W_ * p;
     for (int part = 0; part < 2 && !over_; ++part) {
@@ -157,7 +157,7 @@ class Routh {
       if (!course_.springs_back) {
         until = k > 0.0 ? std::max(-u, 0.0) / k : infinity;
       } else {
-        // Work still to be given back: u x + k x^2 / 2.
+        // Work that is still to be given back: u x + k x^2 / 2.
         const double left = e_ * e_ * course_.most - (course_.work + course_.most);
         const double root = u * u + 2.0 * k * std::max(left, 0.0);
         until = root < 0.0 ? infinity : 2.0 * std::max(left, 0.0) / (u + std::sqrt(root));
@@ -183,7 +183,7 @@ class Routh {
     }
   }
 
-  /// The approach is over, or all is.
+  /// Marks the end of the approach, or of the impact.
   void reached() {
     if (course_.springs_back) {
       over_ = true;

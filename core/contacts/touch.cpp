@@ -27,7 +27,7 @@ struct Placed {
         w(state.twist.angular) {}
 
   [[nodiscard]] Vector3 velocity(const Vector3& x) const { return v + w.cross(x - origin); }
-  /// Acceleration of the material point at x, without those of the body.
+  /// Acceleration of the material point at x without the body's own accelerations.
   [[nodiscard]] Vector3 centripetal(const Vector3& x) const { return w.cross(w.cross(x - origin)); }
 
   Vector3 at;
@@ -38,7 +38,7 @@ struct Placed {
   Vector3 w;
 };
 
-/// Where surfaces touch: the points, and how fast normal and point of contact go.
+/// Where surfaces touch: the points, and the velocities of normal and point of contact.
 TouchNow of_points(const Placed& a, const Placed& b, const Vector3& n, double gap) {
   TouchNow now;
   now.normal = n;
@@ -122,7 +122,7 @@ TouchNow line_on_line(const Placed& a, const Placed& b, const Vector3& side) {
   return now;
 }
 
-/// The same seen from b.
+/// The same touch seen from b.
 TouchNow turned_round(TouchNow now) {
   std::swap(now.point_a, now.point_b);
   now.normal = -now.normal;
@@ -133,7 +133,7 @@ TouchNow turned_round(TouchNow now) {
 
 // --- Which features ----------------------------------------------------------------------------
 
-/// A polytope as a box or a hull has it.
+/// The vertices and edges of a box or a hull.
 struct Corners {
   std::vector<Vector3> vertices;
   std::vector<std::array<std::size_t, 2>> edges;
@@ -178,7 +178,7 @@ std::optional<Corners> polytope_corners(const Shape& shape) {
   return std::nullopt;
 }
 
-/// As near as this part of the size a vertex is where a manifold has its point.
+/// A vertex is at a point of a manifold if it is nearer than this part of the size.
 constexpr double near_vertex = 1e-7;
 
 /// The corner or cap at a point of the surface (body frame), the normal pointing out of the body.
@@ -226,8 +226,8 @@ std::optional<TouchFeature> line_feature(const Shape& shape, const Vector3& x,
   return best;
 }
 
-/// Of what a ball is on, with the middle at x (body frame): the face, the edge or the corner that
-/// is nearest to x; nothing where none is known.
+/// The face, edge or corner that a ball with its middle at x (body frame) is on: the one nearest to
+/// x; nothing if none is known.
 std::optional<TouchFeature> under_ball(const Shape& shape, const Vector3& on,
                                        const Vector3& outward, bool face, const Vector3& x) {
   std::optional<TouchFeature> best;
@@ -247,7 +247,7 @@ std::optional<TouchFeature> under_ball(const Shape& shape, const Vector3& on,
   return best;
 }
 
-/// A ball, which is round, and what it is on.
+/// Whether a feature is that of a ball, which is round.
 bool is_round(const std::optional<TouchFeature>& feature) {
   return feature && feature->radius > 0.0;
 }
@@ -347,7 +347,7 @@ std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point
     }
   }
   if (manifold.face_of_b && (corner_a || !(manifold.face_of_a && corner_b))) {
-    // Where edges cross on a face the point goes with a, until it is looked at again.
+    // Where edges cross on a face the point moves with a, until the next look.
     touch.on_a = corner_a.value_or(TouchFeature{Kind::ball, on_a, Vector3::Zero(), 0.0});
     touch.on_b = face_feature(shape_b, on_b, -n_B);
     return touch;

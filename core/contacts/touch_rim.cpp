@@ -15,7 +15,7 @@ using Side = TouchRim::Side;
 using Sides = std::vector<TouchRim::Side>;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Directions and places of features are those of the shape to this part.
+/// Directions and places of features agree with those of the shape within this.
 constexpr double same = 1e-6;
 
 Side through(const Vector3& normal, const Vector3& x) { return {normal, normal.dot(x)}; }
@@ -167,7 +167,7 @@ std::optional<std::vector<TouchRim>> rims_of(const Touch& touch, const Shape& a,
       return std::nullopt;
     }
     if (of_lines) {
-      // Which faces lines separate is not asked: corners that come down are watched.
+      // The faces beside an edge are left out: corners that come down are watched anyway.
       std::erase_if(*sides, [&](const Side& side) {
         return std::abs(side.normal.dot(feature.direction)) < 0.5;
       });

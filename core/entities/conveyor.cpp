@@ -1,4 +1,5 @@
 #include "core/entity.hpp"
+#include "core/rotation_between.hpp"
 #include "core/scene.hpp"
 
 namespace kairos {
@@ -38,10 +39,9 @@ class Conveyor : public Entity {
   /// Direction of the belt, body frame.
   static Vector3 along(const Body& self) {
     const auto* half_space = std::get_if<HalfSpace>(&self.shape);
-    return half_space == nullptr
-               ? Vector3(Vector3::UnitX())
-               : Quaternion(Quaternion::FromTwoVectors(Vector3::UnitY(), half_space->normal_B)) *
-                     Vector3(Vector3::UnitX());
+    return half_space == nullptr ? Vector3(Vector3::UnitX())
+                                 : rotation_between(Vector3::UnitY(), half_space->normal_B) *
+                                       Vector3(Vector3::UnitX());
   }
 
   double belt_mass_;   // kg

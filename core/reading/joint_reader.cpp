@@ -3,6 +3,7 @@
 #include "core/nearest_name.hpp"
 #include "core/reading/scene_keys.hpp"
 #include "core/reading/scene_limits.hpp"
+#include "core/rotation_between.hpp"
 
 #include <fmt/format.h>
 
@@ -105,7 +106,7 @@ void read_axis(const Reading& reading) {
     if (axis.isZero(0.0)) {
       item.fail("is [0, 0, 0]; allowed: a direction, of any length");
     }
-    frame = Quaternion::FromTwoVectors(Vector3::UnitX(), axis.normalized()).normalized();
+    frame = rotation_between(Vector3::UnitX(), axis.normalized()).normalized();
   }
   for (JointSide* side : {&reading.joint.a, &reading.joint.b}) {
     side->frame = (pose_of(reading.scene, *side).orientation.conjugate() * frame).normalized();

@@ -10,7 +10,7 @@
 namespace kairos::experiments {
 namespace {
 
-/// A pad, a floor and balls: a field has nothing to say to walls.
+/// A pad, a floor and balls: a field does nothing to walls.
 constexpr std::string_view pads = R"(name = "pads"
 summary = "pads, walls, balls"
 duration = 2.0

@@ -27,14 +27,14 @@ Difficulty class_of(std::size_t index) {
   return static_cast<Difficulty>(index % reference::difficulties);
 }
 
-/// Query `index` of a seed: classes and pairs of shapes take turns.
+/// Query `index` of a seed; classes and pairs of shapes take turns.
 Query query_at(std::uint64_t seed, std::size_t index) {
   const std::size_t rest = index / reference::difficulties;
   return reference::random_query(class_of(index), reference::shape_kinds[rest % kinds],
                                  (seed << 32) + rest / kinds);
 }
 
-/// What is kept of an answer.
+/// The part of an answer that is kept.
 struct Outcome {
   ToiStatus status = ToiStatus::separated;
   Finding finding = Finding::right;
@@ -45,7 +45,7 @@ struct Outcome {
   int evaluations = 0;
 };
 
-/// `truth`: none where the answer is not judged.
+/// `truth`: none if the answer is not judged.
 Outcome outcome_of(const Query& q, const ContactDetector& detector, const Truth* truth) {
   const TimeOfImpact toi = q.ask(detector);
   Outcome outcome;
@@ -143,7 +143,7 @@ void explain(std::uint64_t seed, std::size_t index, const ContactDetector& detec
       index, toi.t_lo, toi.t_hi, least, roundoff, why);
 }
 
-/// Answers of one detector, told by class. Returns how many were missed, late or wrong.
+/// Prints the answers of one detector by class; returns how many were missed, late or wrong.
 std::size_t tell_detector(const AccuracyOptions& options, const ContactDetector& detector,
                           const std::vector<Outcome>& outcomes, std::string& csv) {
   const std::string name(detector.info().name);

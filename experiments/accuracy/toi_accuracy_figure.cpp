@@ -136,7 +136,7 @@ void measure(FigureData& data) {
       }
     }
   }
-  // Times are no result: they differ from run to run, and stay out of what is compared.
+  // Times differ from run to run, so they stay out of the results that are compared.
   std::filesystem::create_directories(data.folder());
   AtomicFile file((std::filesystem::path(data.folder()) / "timings.csv").string());
   file.write(timings);

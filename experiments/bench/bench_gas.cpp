@@ -20,9 +20,9 @@
 namespace kairos::experiments {
 namespace {
 
-/// Of the box that the balls fill.
+/// Part of the room that the balls fill.
 constexpr double fraction = 0.1;
-/// Impacts of one run, at least about so many: fewer are over too soon to be timed.
+/// A run has about so many impacts at least: fewer are over too soon to be timed.
 constexpr double least_impacts = 40'000.0;
 
 double radius_of(std::size_t balls) {
@@ -59,14 +59,14 @@ Model box_gas(std::size_t boxes) {
   return Model(parse_scene(text, "boxes"));
 }
 
-/// Most that the process has held so far, bytes.
+/// The most memory that the process has held so far, bytes.
 double most_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
-/// What is seen of a run at every impact, and at its end.
+/// Watches a run at every impact and at its end.
 class Watch : public Recorder {
  public:
   void event(const Event& event) override { least_gap = std::min(least_gap, event.contact.gap); }
@@ -92,7 +92,7 @@ struct GasRun {
   double energy_error = 0.0;                                 ///< a part of all
 };
 
-/// Once through, nobody looking in between; the first launch and predictions are part of it.
+/// Runs once without a watcher; the first launch and predictions are part of the time.
 void run_once(const Model& model, double duration, GasRun& run) {
   const RunChoice choice{.frames = FixedFrames{duration}, .duration = duration};
   Watch watch;

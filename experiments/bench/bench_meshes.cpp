@@ -25,7 +25,7 @@ constexpr std::uint64_t seed = 20261122;
 constexpr std::size_t placements = 256;  ///< more than a branch predictor learns
 constexpr double tolerance = 0.05;       ///< m: a fifth of the tube
 
-/// What one question costs, over all placements.
+/// What one kind of query costs, over all placements.
 struct MeshQuestion {
   std::string name;
   std::function<MeshCost(MeshQueries&, const PosedMesh&, const PosedMesh&, bool& yes)> ask;

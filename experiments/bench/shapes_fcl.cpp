@@ -2,6 +2,7 @@
 
 #ifdef KAIROS_PEER_FCL
 
+#include "core/rotation_between.hpp"
 #include "experiments/bench/fcl_motion.hpp"
 
 #include <fcl/geometry/bvh/BVH_model.h>
@@ -51,7 +52,7 @@ Geometry geometry(const Shape& shape) {
 fcl::Transform3d place(const Shape& shape, const Pose& pose) {
   fcl::Transform3d placed = transform(pose);
   if (std::holds_alternative<Cylinder>(shape)) {
-    placed.rotate(Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), Vector3::UnitY()));
+    placed.rotate(rotation_between(Vector3::UnitZ(), Vector3::UnitY()));
   }
   return placed;
 }

@@ -19,10 +19,10 @@ namespace {
 constexpr std::string_view magic = "kairos checkpoint ";
 constexpr std::string_view format_version = "6";
 constexpr std::size_t checksum_size = 16;
-/// What was set by hand is shorter.
+/// Heads that are not damaged are shorter than this.
 constexpr std::size_t longest_head = std::size_t{1} << 24;
 
-/// Values may hold anything: a line each, without line breaks.
+/// Makes a value one line, as values may contain line breaks.
 std::string one_line(std::string_view text) {
   std::string line(text);
   for (char& c : line) {

@@ -12,7 +12,7 @@
 namespace kairos::experiments {
 namespace {
 
-/// Where a drive takes its body, at many moments: a recording may have changed under its name.
+/// Fingerprint of where a drive takes its body: a recording may change and keep its name.
 std::string drive_fingerprint(const Drive& drive, double duration) {
   constexpr int samples = 256;
   Archive archive;

@@ -26,7 +26,7 @@ namespace {
 
 enum ExitCode { done = 0, run_failed = 1, input_wrong = 2 };
 
-/// What a person wrote may be part of a message: it moves no cursor and rings no bell.
+/// A message may quote what a person wrote: control characters in it become harmless.
 std::string printable(std::string_view message) {
   std::string text;
   for (const char c : message) {
@@ -47,7 +47,7 @@ int fail(ExitCode code, const char* message) {
   return code;
 }
 
-/// What was printed counts only once it has left: a full disk shows here at the latest.
+/// Flushes the output: a full disk shows here at the latest.
 int flush_results() {
   errno = 0;
   std::cout.flush();
@@ -155,7 +155,7 @@ int parse_and_run(int argc, const char* const* argv) {
 }  // namespace
 
 int run_command_line(int argc, const char* const* argv) {
-  // A file that grows beyond its limit is an error of a write, to be told; not a sudden death.
+  // A file beyond its limit is a failed write with a message, not the death of the program.
   std::signal(SIGXFSZ, SIG_IGN);
   try {
     return parse_and_run(argc, argv);
@@ -164,7 +164,7 @@ int run_command_line(int argc, const char* const* argv) {
   } catch (const RunError& error) {
     return fail(run_failed, error.what());
   } catch (const std::system_error& error) {
-    // What a formatted print throws where the disk is full.
+    // What a formatted print throws if the disk is full.
     const bool print = std::string_view(error.what()).starts_with("cannot write to file");
     const std::string why = "standard output: cannot be written: " + error.code().message();
     return fail(run_failed, print ? why.c_str() : error.what());

@@ -15,7 +15,7 @@ namespace kairos::experiments {
 
 namespace {
 
-/// Others keep a shape of theirs for each.
+/// The peers keep a shape of their own for each of ours.
 constexpr std::size_t most_shape_pairs = std::size_t{1} << 14U;
 
 struct BenchCommand {

@@ -47,7 +47,7 @@ struct ExperimentCommand {
   }
 
  private:
-  /// What is measured for a figure is an experiment, too.
+  /// The measurements of a figure count as an experiment, too.
   void make(const ThesisFigure& figure) const {
     const std::string folder =
         out.empty() ? (std::filesystem::path("out") / figure.name).string() : out;

@@ -28,7 +28,7 @@ std::string combination(Combine how, double e, double other) {
   return fmt::format("min({}, {})", e, other);
 }
 
-/// What of the speed each impact keeps: by default the product of both bodies, which few expect.
+/// Explains the restitution of pairs: by default the product of both bodies', which few expect.
 void explain_restitution(const Scene& scene, const Model& model) {
   std::map<double, std::string> free, all;  // one body of each restitution
   for (BodyIndex i = 0; i < model.size(); ++i) {

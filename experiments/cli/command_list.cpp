@@ -26,7 +26,7 @@
 namespace kairos::experiments {
 namespace {
 
-/// What there is of one kind: a table whose first column is the name.
+/// All choices of one kind: a table whose first column is the name.
 struct Listing {
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;
@@ -167,7 +167,7 @@ std::size_t terminal_width() {
   return width;
 }
 
-/// In lines of at most `width` characters, broken between words; those that follow are indented.
+/// Breaks a line between words into lines of at most `width` characters; the others are indented.
 std::string wrapped(const std::string& line, std::size_t width) {
   constexpr std::size_t least = 40;
   constexpr std::size_t indent = 6;
@@ -188,7 +188,7 @@ std::string wrapped(const std::string& line, std::size_t width) {
   return rest.empty() ? out : out + "\n" + std::string(indent, ' ') + std::string(rest);
 }
 
-/// For people: columns as wide as what is in them; a header where names alone do not say enough.
+/// Prints for people: columns as wide as their content, and a header if names do not say enough.
 void print_table(const Section& section, const Listing& listing) {
   std::vector<std::vector<std::string>> lines = listing.rows;
   if (listing.columns.size() > 3) {
@@ -214,7 +214,7 @@ void print_table(const Section& section, const Listing& listing) {
   }
 }
 
-/// For programs: all columns of one kind, or kind, name and summary of all kinds.
+/// Prints for programs: all columns of one kind, or kind, name and summary of all kinds.
 void print_csv(const std::string& wanted) {
   CsvRow row;
   const auto print = [&row](const std::vector<std::string>& fields) {

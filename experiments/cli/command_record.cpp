@@ -68,7 +68,7 @@ void add_record_command(Command& app) {
   record.add_option("--angle-noise", rally.angle_noise, "of a turn about each axis, degrees")
       .check(finite_number(0.0, 90.0))
       .capture_default_str();
-  // Slower swings would not be over before the next ball is served.
+  // Slower swings would last until after the next ball is served.
   record.add_option("--slowest", rally.slowest, "least of the strokes' greatest speeds, m/s")
       .check(finite_number(2.0, 100.0))
       .capture_default_str();

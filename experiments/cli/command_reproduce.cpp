@@ -35,7 +35,7 @@ struct ReproduceCommand {
   void make(const ExperimentSpec& spec, const fs::path& folder) const;
 };
 
-/// Each name once, as the report names it; figures may be written fig1 or 1.
+/// The wanted names, each once, as the report has them; figures may be written fig1 or 1.
 std::vector<std::string> ReproduceCommand::wanted() const {
   const std::vector<std::string> all = reproducible_names();
   if (only.empty()) {

@@ -26,7 +26,7 @@
 namespace kairos::experiments {
 namespace {
 
-/// What is allowed and hardly meant.
+/// Warns of frame times that are allowed and hardly meant.
 void warn_of_frames(const Scene& scene, const RunChoice& choice) {
   const double frame = mean_frame_duration(choice.frames.value_or(scene.frames));
   const double duration = choice.duration.value_or(scene.duration);
@@ -53,7 +53,7 @@ struct RunCommand {
                              FileKeeper& keeper, std::string_view begun) const;
 };
 
-/// What --resume names, if it is of this run.
+/// The checkpoint that --resume names, if it is of this run.
 CheckpointFile RunCommand::checkpoint(const Model& model, const RunIdentity& identity) const {
   if (resume.empty()) {
     return {};
@@ -87,7 +87,7 @@ class RunOutput {
     }
   }
 
-  /// Three, or none: nobody wants them.
+  /// The three files, or none if they are not wanted.
   [[nodiscard]] const std::vector<AtomicFile*>& files() const { return files_; }
   void publish(const std::string& summary) {
     if (folder_) {

@@ -37,7 +37,7 @@ struct SweepCommand {
   void print_summaries(const ExperimentSpec& experiment) const;
 };
 
-/// Without a folder: the rows of all runs, on stdout.
+/// Prints the rows of all runs on stdout, for a sweep without a folder.
 void SweepCommand::print_summaries(const ExperimentSpec& experiment) const {
   for (const SweepSpec& sweep : experiment.sweeps) {
     fmt::print("{}", run_sweep(sweep, size.threads).runs.csv());
@@ -78,7 +78,7 @@ void SweepCommand::tell_progress(const ExperimentSpec& experiment) const {
              100.0 * static_cast<double>(progress.rows) / static_cast<double>(progress.runs));
 }
 
-/// A name is no spec; what it names is run by another command.
+/// Refuses names: another command runs the experiments that they name.
 void SweepCommand::refuse_names() const {
   std::error_code none;
   if (std::filesystem::exists(spec, none)) {

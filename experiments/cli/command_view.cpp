@@ -77,7 +77,7 @@ ViewRun simulated(const Model& model, const RunChoice& choice) {
   return run;
 }
 
-/// A run was made with options of its own.
+/// Refuses options of a run: a recorded run was made with its own.
 void ViewCommand::refuse_options() const {
   if (!scene.overrides().empty() || identity_of(method.choice()) != identity_of(RunChoice{})) {
     throw InputError(scene.name(), 0, "",

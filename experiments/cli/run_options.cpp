@@ -23,7 +23,7 @@ std::string names_of(std::span<const std::shared_ptr<const Port>> entries) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// What a plug-in option can be, or what an option means; with its default.
+/// Help of an option: its allowed names or its meaning, with its default.
 std::string help_of(const Option& option) {
   std::string help(option.help);
   if (option.name == "scheme") {

@@ -50,7 +50,7 @@ double state_error(const BodyState& s, const Vector3& p, const Vector3& v, doubl
   return std::max((s.pose.position - p).norm() / L, (s.twist.linear - v).norm() / V);
 }
 
-/// The ball flies at a wall (or what the scene has in its place) and is back where it was.
+/// The ball flies at a wall (or what the scene has in its place) and returns to its start.
 struct Reflection {
   double speed = 1.0;
   double size = radius;
@@ -266,14 +266,14 @@ class Cases {
       c.toml = head(c.family, 2.0 * t, h, 0.0) + plane("floor", Vector3::UnitY(), Vector3::Zero()) +
                ball("zz", radius, 1.0, {0.0, radius + down * t, 0.0}, {along, -down, 0.0});
       c.error = [=](const ExtremeRun& run) {
-        // Of the way down, not of the way along.
+        // The error is relative to the way down, not along.
         return std::abs(run.end.back().twist.linear.y() - down) / down;
       };
       add(c, "angle / rad", angle);
     }
   }
 
-  /// What lies on a floor stays.
+  /// A body that lies on a floor stays.
   void resting() {
     for (const double e : {0.0, 0.5, 0.9, 1.0}) {
       for (const bool box : {false, true}) {
@@ -317,11 +317,11 @@ class Cases {
     }
   }
 
-  /// A ball to and fro between two walls.
+  /// A ball bounces between two walls.
   void consecutive() {
     for (const double n : decades(1, full_ ? 7 : 4, 1)) {
       const double gap = 1.0, v = 1.0;
-      // Impacts a frame: no fraction, so that nobody is right because two errors cancel.
+      // Impacts per frame: irrational, so that no method is right because two errors cancel.
       const double every = std::numbers::phi * (n > 1e4 ? 6.0 : 0.25);
       const double frame = every * gap / v;
       const double end = (n - 0.5) * gap / v + 0.25 * gap / v;

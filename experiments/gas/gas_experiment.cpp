@@ -192,7 +192,7 @@ std::vector<std::vector<Cell>> measure_shares(std::int64_t boxes, std::string& s
   return rows;
 }
 
-/// What is wrong in the frames of a run.
+/// Counts what is wrong in the frames of a run.
 class FrameFaults : public Recorder {
  public:
   void begin(const Model& model) override { probe_ = std::make_unique<PenetrationProbe>(model); }
@@ -279,7 +279,7 @@ void compare_schemes(const Amount& amount, std::size_t threads, ProgramOutput& o
     output.failed += std::get<std::string>(row[3]) == "completed" ? 0 : 1;
   }
   output.tables.emplace_back("schemes", std::move(table));
-  // One after the other, alone on the machine.
+  // Runs are timed one after the other, alone on the machine.
   Table timings{{"scheme", "way", "seconds"}, {}};
   for (const SchemeCase& scheme : cases) {
     timings.rows.push_back({std::string(scheme.scheme), number_cell(scheme.way),

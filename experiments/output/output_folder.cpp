@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// There while files get their names.
+/// This file exists while files get their names.
 constexpr const char* publishing = ".publishing";
 
 std::string reason() { return std::generic_category().message(errno); }
@@ -65,7 +65,7 @@ void OutputFolder::take() {
                      "is being written by another run; allowed: a folder of its own, or the same "
                      "one when that has ended");
   }
-  // Whoever had it may have removed it between the opening and the lock.
+  // The former owner may have removed the file between the opening and the lock.
   struct stat locked {};
   struct stat named {};
   if (::fstat(descriptor_, &locked) != 0 || ::stat(path_.c_str(), &named) != 0 ||
@@ -90,7 +90,7 @@ bool OutputFolder::is_ours() const {
 }
 
 void OutputFolder::claim(std::string_view name) const {
-  // Names are checked where they are read; what comes through all the same ends here.
+  // Names are checked where they are read; this is the second check.
   if (name.empty() || name == "." || name == ".." ||
       name.find_first_of(std::string_view("/\0", 2)) != std::string_view::npos) {
     throw InputError(path_.string(), 0, "--out",

@@ -22,7 +22,7 @@ std::string_view gravity_name(GravityMode mode) {
   return mode == GravityMode::force ? "force" : "acceleration";
 }
 
-/// What `auto` came to: the integrators in use, each once.
+/// The integrators in use, each once: `auto` may have chosen several.
 std::string integrators_in_use(const FinishedRun& run) {
   if (const SchemeInfo scheme = find_scheme(run.choice.method.scheme)->info();
       !scheme.integrator.empty()) {
@@ -75,7 +75,7 @@ std::string written(const std::vector<Vector3>& vertices) {
   return text;
 }
 
-/// What a picture of the run needs to know of each body; `kairos render` reads it.
+/// Adds what a picture of the run needs about each body; `kairos render` reads it.
 void add_bodies(JsonWriter& json, const Model& model) {
   constexpr std::string_view movers[] = {"fixed", "driven", "free"};
   json.open("bodies");

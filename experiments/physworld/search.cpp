@@ -20,7 +20,7 @@ namespace {
 constexpr double duration = 14.0;  // s
 constexpr double mass = 20.0;      // kg: above the belt's 10, or it swallows what falls on it
 
-/// What is looked for; the thesis' virtual units. The pad is where the thesis has it.
+/// The parameters that are searched, in the thesis' virtual units. The pad is where it is there.
 struct World {
   double pad_width, pad_height;  ///< half-extents of the well
   Vector3 conveyor;              ///< centre
@@ -141,7 +141,7 @@ std::string def_of(const World& w) {
                     duration);
 }
 
-/// How a world is told by one scheme.
+/// The story of a world as one scheme tells it.
 struct Telling {
   Story story;
   Footage footage;

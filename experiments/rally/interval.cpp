@@ -15,7 +15,7 @@ Interval wilson(double p, double n, double z) {
   const double scale = 1.0 / (1.0 + z * z / n);
   const double centre = scale * (p + 0.5 * z * z / n);
   const double half = scale * z * std::sqrt(p * (1.0 - p) / n + 0.25 * z * z / (n * n));
-  // Where all or nothing was counted, one end is known; the formula reaches it up to roundoff.
+  // If all or none were counted, one end is known; the formula reaches it up to roundoff.
   return {p, p == 0.0 ? 0.0 : std::max(0.0, centre - half),
           p == 1.0 ? 1.0 : std::min(1.0, centre + half)};
 }

@@ -17,7 +17,7 @@ namespace {
 /// The blade of meshes/bat.off, about the origin: half its width and height, m.
 constexpr double blade_width = 0.075;
 constexpr double blade_height = 0.08;
-/// What no player sees, m.
+/// Differences that no player sees, m.
 constexpr double unseen = 1e-4;
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "experiments/rally/recording.hpp"
 
 #include "core/random.hpp"
+#include "core/rotation_between.hpp"
 #include "experiments/rally/hand_path.hpp"
 #include "simulation/output/csv_row.hpp"
 
@@ -38,7 +39,7 @@ double rounded(double x, double parts) { return std::round(x * parts) / parts; }
 Quaternion facing(const Vector3& direction, double angle) {
   const Vector3 width = Vector3::UnitY().cross(direction).normalized();
   const Vector3 face = direction.z() < 0.0 ? Vector3(-Vector3::UnitZ()) : Vector3(Vector3::UnitZ());
-  return rotate(angle * width, Quaternion::FromTwoVectors(face, direction)).normalized();
+  return rotate(angle * width, rotation_between(face, direction)).normalized();
 }
 
 struct Paths {
@@ -93,7 +94,7 @@ StrokePlan random_stroke(double begin, const RallyOptions& options, Random& rand
   return plan;
 }
 
-/// What a tracker tells of a path, one sample per 1/rate from `first` on.
+/// Samples of a path as a tracker gives them, one per 1/rate from `first` on.
 std::vector<TrackSample> sampled(const HandPath& path, double first, double last, Stream stream,
                                  const RallyOptions& options) {
   Random random(options.seed, stream);
@@ -119,7 +120,7 @@ Paths paths_at_rest() {
           HandPath({rest_of_hand, Quaternion::Identity()})};
 }
 
-/// What the trackers make of the paths.
+/// The recording that the trackers make of the paths.
 RallyRecording recorded(std::vector<Stroke> strokes, const Paths& paths, double bat_phase,
                         double hand_phase, const RallyOptions& options) {
   RallyRecording rally;

@@ -64,7 +64,7 @@ void StrokeWatch::look(const Frame& frame, StrokeOutcome& stroke) {
       detector_
           ->overlap(model_->shape(bat_), bat.pose, model_->shape(ball_), frame.bodies[ball_].pose)
           .gap;
-  // Roundoff: coordinates of a few metres; touching is not penetration.
+  // Less is roundoff of coordinates of a few metres: touching is not penetration.
   if (gap < -64.0 * std::numeric_limits<double>::epsilon()) {
     ++stroke.penetrating;
     stroke.depth = std::max(stroke.depth, -gap);

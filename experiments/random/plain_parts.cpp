@@ -195,7 +195,7 @@ class LeastNorm {
   }
 
  private:
-  /// That is lowest along n.
+  /// The point that is lowest along n.
   [[nodiscard]] Vector point(const Vector& n) const { return b_.highest(-n) + by_ - a_.highest(n); }
 
   /// Is 0 in the tetrahedron of four points? By the signs of four volumes.

@@ -151,7 +151,7 @@ class Maker {
 
   double size() { return length_ * random_.log_uniform(0.02, 0.5); }
 
-  /// Where it overlaps nothing, if a place is found.
+  /// Places a body where it overlaps nothing, if a place is found.
   void place(RandomBody b) {
     for (int attempt = 0; attempt < 20; ++attempt) {
       for (int axis = 0; axis < 3; ++axis) {

@@ -91,7 +91,7 @@ class Draw {
     body_.radius = radius;
     body_.length = length;
   }
-  /// Of points on an ellipsoid.
+  /// Makes a hull of points on an ellipsoid.
   void hull(const Vector3& half) {
     body_.shape = "hull";
     for (std::uint64_t k = 4 + random_.below(9); k > 0; --k) {

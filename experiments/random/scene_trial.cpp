@@ -183,7 +183,7 @@ Trial try_scene(const RandomScene& scene) {
   try {
     const Model model(parse_scene(scene.toml(), scene.name + ".toml"));
     const Trial trial = try_model(model, false);
-    // What steps and impacts lose to roundoff is replayed only where it shows.
+    // Roundoff is replayed only for failures of the ledger.
     return trial.fate == Fate::ledger ? try_model(model, true) : trial;
   } catch (const InputError& error) {
     return {Fate::invalid, error.what(), 0.0, 0};

@@ -51,7 +51,7 @@ class Builder {
 
  private:
   bool chance(double p) { return random_.uniform() < p; }
-  /// Of 0 and 1 often: they are special.
+  /// Draws 0 and 1 often, as they are special.
   double restitution() {
     const double u = random_.uniform();
     return u < 0.2 ? 0.0 : u < 0.4 ? 1.0 : u < 0.5 ? 0.5 : random_.uniform();

@@ -133,7 +133,7 @@ Table work_table(int most, std::size_t threads) {
   return table;
 }
 
-/// What a scheme does when a frame comes late.
+/// Measures each scheme when a frame comes late.
 Table stall_table(int repeats, std::size_t threads) {
   struct Setting {
     std::string_view name;

@@ -231,7 +231,7 @@ void read_pictures(const TableRows& rows, Footage& footage) {
 }  // namespace
 
 std::size_t Footage::at(double time) const {
-  // What rounding may put before a frame's time belongs to that frame.
+  // An event that rounding puts before a frame's time belongs to that frame.
   const double slack = 1e-9 * (1.0 + std::abs(time));
   const auto after =
       std::upper_bound(pictures.begin(), pictures.end(), time + slack,

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/mesh_body.hpp"
 #include "core/reading/csv.hpp"
+#include "core/rotation_between.hpp"
 #include "simulation/registry.hpp"
 
 #include <fmt/format.h>
@@ -51,7 +52,7 @@ std::string pigment(const Colour& c, double transmit) {
                      transmit);
 }
 
-/// By its name, by what it is, or the next of the palette.
+/// The colour by the name or the kind of an actor, or the next of the palette.
 Colour colour_of(const Actor& actor, std::size_t free_index) {
   for (const Colour& colour : palette) {
     if (actor.name.find(colour.name) != std::string::npos) {
@@ -73,7 +74,7 @@ Colour colour_of(const Actor& actor, std::size_t free_index) {
   return actor.entity == "conveyor" ? Colour{"", 0.45, 0.42, 0.5} : Colour{"", 0.25, 0.45, 0.4};
 }
 
-/// What lies below the planes of all faces; edges of rounded ones are drawn sharp.
+/// The solid below the planes of all faces; rounded edges are drawn sharp.
 std::string planes(const Hull& hull) {
   const Polytope& polytope = *hull.core;
   std::string text = "intersection { ";
@@ -85,7 +86,7 @@ std::string planes(const Hull& hull) {
   return text;
 }
 
-/// Triangles; what they enclose is inside.
+/// A mesh of triangles, with what they enclose as its inside.
 std::string triangles(const CollisionMesh& mesh) {
   std::string text = fmt::format("mesh2 {{ vertex_vectors {{ {}", mesh.vertices().size());
   for (const Vector3& x : mesh.vertices()) {
@@ -264,7 +265,7 @@ class Painter {
       return {};
     }
     // The pattern lies in the plane: y is turned to the normal.
-    const Quaternion up(Quaternion::FromTwoVectors(Vector3::UnitY(), half_space.normal_B));
+    const Quaternion up = rotation_between(Vector3::UnitY(), half_space.normal_B);
     bool hides = false;
     for (std::size_t i = 0; i < footage_.actors.size(); ++i) {
       hides = hides || (footage_.actors[i].is_free && behind(picture_.poses[i].position));
@@ -306,7 +307,7 @@ class Painter {
     const double half_width = std::tan(camera.angle * std::numbers::pi / 360.0);
     const double half_height = half_width * options_.height / options_.width;
     const double size = 0.13 * half_height;
-    // So near that nothing comes before it.
+    // Distance of the label, so small that nothing is in front of it.
     const double near = 0.02 * (camera.target - camera.position).norm();
     const Vector3 corner =
         camera.position + near * (ahead - 0.96 * half_width * right - 0.94 * half_height * up);
@@ -391,7 +392,7 @@ struct Extent {
 Camera camera_for(std::span<const Shot> shots, double aspect) {
   Extent seen;
   for (const bool moving : {true, false}) {
-    // What stands still is seen as a whole unless it dwarfs what moves.
+    // Bodies at rest are shown whole, unless they are this many times as large as what moves.
     constexpr double dwarfs = 3.0;
     const double most =
         moving || seen.empty() ? std::numeric_limits<double>::infinity() : dwarfs * seen.radius();
@@ -437,7 +438,7 @@ std::vector<Overlapping> overlapping(const Footage& footage, std::size_t picture
           detector->overlap(first.collides_as, poses[a], second.collides_as, poses[b]).gap;
       const double scale = poses[a].position.norm() + poses[b].position.norm() +
                            smallest_extent(first.is_free ? first.shape : second.shape);
-      // Roundoff, and what is too thin to be seen.
+      // Less is roundoff, or too thin to be seen.
       if (gap < -1e-9 * scale) {
         found.push_back({a, b, -gap});
       }

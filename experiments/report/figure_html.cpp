@@ -80,7 +80,7 @@ std::string figure_html(const ReportEntry& entry, std::size_t drawing, const std
   namespace fs = std::filesystem;
   const auto& [name, caption] = entry.figures[drawing];
   const std::string base = html(entry.name + "/" + name);
-  // What a ray tracer makes has no lines to keep: a PNG alone.
+  // A ray-traced picture has no vector form: only a PNG.
   std::error_code error;
   const bool vector = fs::exists(fs::path(entry.folder) / (name + ".svg"), error);
   const std::string shown = base + (vector ? ".svg" : ".png");

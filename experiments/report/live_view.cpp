@@ -91,7 +91,7 @@ std::string live_html(const ReportEntry& entry) {
     return "";
   }
   const std::string path = fmt::format("live/{}.html", live->scene);
-  // Loaded where its link is followed, and not before.
+  // The drawing is loaded only when its link is followed.
   return fmt::format(
       "<details class=\"live\"><summary>See it move: {0}</summary>\n"
       "<p class=\"note\"><a href=\"{1}\" target=\"live-{2}\">Show it here</a>, or <a "

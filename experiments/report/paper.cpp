@@ -66,7 +66,7 @@ class PaperFiller {
     return found;
   }
 
-  /// What was cited, by key.
+  /// The works that were cited, by key.
   [[nodiscard]] std::string references() const {
     std::vector<const BibliographyEntry*> cited;
     for (const BibliographyEntry& entry : bibliography_) {

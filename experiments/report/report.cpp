@@ -68,7 +68,7 @@ std::string facts_html(const ReportEntry& entry) {
   return folded("To repeat it", out + "</dl>\n" + files_html(entry));
 }
 
-/// The tables that an experiment which is no sweep wants to be seen.
+/// The tables that an experiment other than a sweep shows.
 std::string shown_tables_html(const ReportEntry& entry) {
   std::string out;
   for (const auto& [key, name] : entry.manifest) {
@@ -114,7 +114,7 @@ std::string figures_html(const Entries& entries, const ReportEntry& entry) {
   return out;
 }
 
-/// A figure of the thesis: what it shows there, how it is made here, what it shows now.
+/// A figure of the thesis: its caption there, how it is made here, and the result.
 std::string thesis_figure_html(const Entries& entries, const ReportEntry& entry) {
   std::string out = fmt::format("<article id=\"{}\"><h2 class=\"title\">{}</h2>\n",
                                 html(entry.name), html(entry.entry("title")));
@@ -158,7 +158,7 @@ std::string versions_html(const ReportEntry& entry) {
   return out;
 }
 
-/// What a reader wants to know first, energy before all else, and the entry that shows it.
+/// An answer that a reader wants first, and the entry that shows it.
 struct Headline {
   std::string_view entry;
   std::string_view says;

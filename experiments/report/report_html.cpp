@@ -64,7 +64,7 @@ Layout layout_of(const Table& table) {
   return layout;
 }
 
-/// Median with quartiles; what is 0 or 1 in a run, as the fraction of runs.
+/// Median with quartiles; a metric that is 0 or 1 in a run, as the fraction of runs.
 std::string statistic_cell(const std::vector<Cell>& row, std::size_t group, bool repeated,
                            const std::string& name) {
   const auto text = [&](std::size_t i) { return to_text(row[group + i]); };

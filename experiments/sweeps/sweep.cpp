@@ -58,8 +58,7 @@ RunRecord run_one(const SweepSpec& spec, const std::string& scene, const Planned
   return record;
 }
 
-/// A spec none of whose runs can even be read is wrong; one of whose runs cannot, has a row that
-/// says so.
+/// Refuses a spec if none of its runs can be read; if only some cannot, their rows say so.
 void check_readable(const SweepSpec& spec, const std::string& scene, const SweepPlan& plan) {
   std::optional<InputError> first;
   for (std::size_t i = 0; i < plan.size(); ++i) {
@@ -92,7 +91,7 @@ std::string checked_scene(const SweepSpec& spec, const SweepPlan& plan, const Sh
   return scene;
 }
 
-/// Runs those of a shard that a journal does not have yet; returns how many rows it then has.
+/// Runs the part of a shard that its journal does not have; returns its number of rows then.
 std::size_t run_missing(const SweepSpec& spec, const SweepPlan& plan, const std::string& scene,
                         std::size_t threads, const Shard& shard, SweepJournal& journal) {
   const std::size_t per_method = plan.size() / spec.methods.size();

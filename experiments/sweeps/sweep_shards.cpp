@@ -130,7 +130,7 @@ void look_for_shards(const fs::path& folder, int depth, std::vector<FoundShard>&
   }
 }
 
-/// Names what is foreign, there twice or missing; otherwise the shards are in their order.
+/// Refuses shards that are foreign, duplicate or missing; otherwise sorts them.
 void check_shards(std::vector<FoundShard>& found) {
   const FoundShard& first = found.front();
   std::map<std::size_t, const FoundShard*> by_index;

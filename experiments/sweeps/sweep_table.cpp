@@ -19,8 +19,8 @@ Cell axis_cell(const AxisValue& value) {
 
 bool is_drawn(const Axis& axis) { return axis.kind != Axis::Kind::listed; }
 
-/// What all tables start with: the method and the axes; without those that are drawn per repeat in
-/// tables over points.
+/// Adds the columns that all tables start with: method and axes, without those that are drawn per
+/// repeat in tables over points.
 void add_point_columns(const SweepSpec& spec, bool drawn_too, std::vector<Cell>& row) {
   row.emplace_back(std::string("method"));
   for (const Axis& axis : spec.axes) {
@@ -144,7 +144,7 @@ void append_distribution(std::vector<double>& values, std::vector<Cell>& row) {
   }
 }
 
-/// Gathers the repeats of one point, and tells them as one row.
+/// Gathers the repeats of one point into one row.
 class Summary {
  public:
   Summary(const SweepSpec& spec, const std::vector<std::string>& names, const RowSink& sink)

@@ -42,7 +42,7 @@ Telling tell(const MethodChoice& method) {
 
 const MethodChoice events{"event-driven", "auto", "certified", "thesis"};
 
-/// What a caption tells besides its collision, with the time at which the original has it.
+/// Adds to a caption the times at which the original has its other events.
 std::string with_times(const std::string& caption, int frame, double shown, const Story& story) {
   std::string more;
   for (const Told& moment : story.moments) {
@@ -100,7 +100,7 @@ class BeltWatch : public Recorder {
   Vector3 after = Vector3::Zero();
 };
 
-/// What the belt of 13.6 does to balls of different masses: the scene `conveyor`.
+/// Records what the belt of 13.6 does to balls of different masses: the scene `conveyor`.
 void tell_belt(FigureData& data) {
   Table& table = data.table("belt", {{"mass", "kg", "of the ball"},
                                      {"method", "", "scheme and impact law"},

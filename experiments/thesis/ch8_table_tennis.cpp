@@ -6,7 +6,7 @@
 namespace kairos::experiments::thesis {
 namespace {
 
-/// When the ball met what.
+/// Records when the ball met which body.
 class Impacts : public Recorder {
  public:
   void begin(const Model& model) override { model_ = &model; }
@@ -71,7 +71,7 @@ Told tell_session() {
   const Stroke& first = recording.strokes[0];
   const Stroke& second = recording.strokes[1];
   Told told;
-  // A moment that one scheme misses is shown when the other had it.
+  // A moment that one scheme misses is shown at the time of the other.
   const auto both = [&](std::string_view body, double from) {
     const double exactly = exact.impacts.first(body, from);
     return std::pair{

@@ -1,5 +1,6 @@
 #include "core/model.hpp"
 #include "core/reading/scene_reader.hpp"
+#include "core/rotation_between.hpp"
 #include "experiments/thesis/errata.hpp"
 #include "experiments/thesis/errata_runs.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
@@ -21,7 +22,7 @@ ThesisFigure aabbs_overlapping();
 
 namespace {
 
-/// Numbers of a figure, without its drawing.
+/// The numbers of a figure, without its drawing.
 class FigureNumbers {
  public:
   FigureNumbers(const ThesisFigure& figure, Size size) : data_("", size) { figure.measure(data_); }
@@ -36,7 +37,7 @@ double reach_along_diagonal(const Shape& shape) {
   const auto detector = find_detector("sat");
   const Vector3 normal = Vector3::Ones().normalized();
   const Pose plane{.position = Vector3::Zero(),
-                   .orientation = Quaternion::FromTwoVectors(Vector3::UnitY(), normal)};
+                   .orientation = rotation_between(Vector3::UnitY(), normal)};
   double inside = 0.0;
   double outside = 10.0;
   for (int halvings = 0; halvings < 60; ++halvings) {

@@ -10,7 +10,7 @@
 namespace kairos::experiments::thesis {
 namespace {
 
-/// From where a player stands.
+/// The view of a player.
 const Camera player{{0.9, 1.75, 2.35}, {-0.02, 0.98, 0.15}, 47.0};
 
 Footage run(const Scene& scene, const RunChoice& choice) {

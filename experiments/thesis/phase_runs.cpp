@@ -85,7 +85,7 @@ RunChoice substep_choice(const std::string& scheme, bool equal_substeps) {
 
 double tunnelled_fraction(RunChoice choice, double speed, int n) {
   choice.frames = FixedFrames{frame};
-  // A ball that is turned back in may take many frames to come out on the other side.
+  // A ball that is turned back in may need many frames to come out on the other side.
   choice.duration = 2.0 / speed + 20.0 * frame;
   const double shift = Random(seed, static_cast<std::uint64_t>(speed)).uniform();
   double count = 0.0;

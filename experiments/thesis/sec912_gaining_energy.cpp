@@ -22,7 +22,7 @@ constexpr double controlled_tolerance = 1e-6;
 
 double duration(Size size) { return size == Size::full ? 600.0 : 60.0; }
 
-/// One scheme with one integrator, and what became of it.
+/// One scheme with one integrator, and its result.
 struct Combination {
   std::string scheme, integrator;
   std::string refusal;
@@ -191,7 +191,7 @@ void add_causes(FigureData& data, const Model& model, double seconds) {
   for (std::int64_t n = 1; n <= frames; ++n) {
     literal_frame(setting, usual);
     literal_frame(setting, longer);
-    // Of the double's own state, evaluated in long double: the evaluation adds nothing.
+    // The energy of the double's own state is evaluated in long double, so it adds no roundoff.
     const BounceState<long double> widened{usual.height, usual.velocity, usual.acceleration, 0};
     const long double gain = widened.energy(setting) - static_cast<long double>(start);
     const long double long_gain = longer.energy(setting) - static_cast<long double>(start);

@@ -33,7 +33,7 @@ std::vector<std::vector<RallyOutcome>> play_all(const std::vector<RallyMethod>& 
   return outcomes;
 }
 
-/// What all rallies by one method came to.
+/// The sums over all rallies by one method.
 struct Sum {
   std::int64_t strokes = 0;
   std::vector<Cluster> passed;          ///< strokes of each rally
@@ -149,7 +149,7 @@ void tell_methods(const std::vector<RallyMethod>& methods, const std::vector<Sum
   }
 }
 
-/// 13.8 beside the truth, by the true speed of the bat.
+/// Compares the speeds of 13.8 with the truth, by the true speed of the bat.
 void tell_speeds(const std::vector<RallyOutcome>& original, FigureData& data) {
   Table& table = data.table("speeds", {{"from", "m/s", "true speed of the bat"},
                                        {"to", "m/s", "true speed of the bat"},
@@ -192,7 +192,7 @@ const Sum& named(std::string_view name, const std::vector<RallyMethod>& methods,
   throw std::out_of_range(std::string(name));
 }
 
-/// What fig. 15 changes, rally by rally, which are the same for both.
+/// Records what fig. 15 changes, rally by rally: both methods play the same ones.
 void tell_difference(const std::string& value, const Sum& literal, const Sum& original,
                      FigureData& data) {
   std::vector<double> more;

@@ -192,7 +192,7 @@ class Stream {
     }
     return !job.lines.empty();
   }
-  /// Puts the rows of a query whose end is still to come aside, and those before in front.
+  /// Keeps rows of an unfinished query for the next job, and adds those of the job before.
   void keep_queries_whole(Job& job) {
     if (format_.rows_per_query == 1) {
       return;

@@ -26,7 +26,7 @@ constexpr std::array<std::string_view, 19> number_names{"hx", "hy", "hz", "px", 
                                                         "ay", "az", "wx", "wy", "wz"};
 enum NumberIndex : std::size_t { h = 0, p = 3, q = 6, v = 10, a = 13, w = 16 };
 
-/// Of a part of a compound, m: as far as a vertex of a mesh may be.
+/// Largest coordinate of a part of a compound, m: that of a vertex of a mesh.
 constexpr double largest_part_number = 1e12;
 
 void refuse(std::string_view column, std::string reason) {
@@ -176,7 +176,7 @@ class ToiQueryFormat::Body {
     }
   }
 
-  /// What three sizes tell; nothing of another kind.
+  /// The shape that three sizes describe; nothing for other kinds.
   template <typename Extent>
   [[nodiscard]] static std::optional<Shape> simple(std::string_view kind, const Extent& size) {
     if (kind == "box") {

@@ -77,7 +77,7 @@ double worst_difference(const std::vector<double>& x, const std::vector<double>&
   return worst;
 }
 
-/// The exact solution's answers instead of the run's.
+/// Replaces the answers of the run by those of the exact solution.
 void make_exact(const ExactMotion& exact, const Model& model, Reference& reference) {
   reference.kind = "exact solution";
   double position = 0.0;
@@ -110,7 +110,7 @@ void make_exact(const ExactMotion& exact, const Model& model, Reference& referen
   reference.time_uncertainty = 0.0;
 }
 
-/// What two bodies are: a method may be right for one kind of meeting and wrong for another.
+/// The kinds of two bodies: a method may be right for one kind of pair and wrong for another.
 std::string kind_of(const Model& model, const BodyPair& pair) {
   std::string a(model.entity(pair.first).kind());
   std::string b(model.entity(pair.second).kind());
@@ -145,7 +145,7 @@ double scale_of(const Model& model, double duration) {
   return scale;
 }
 
-/// Impacts up to where they accumulate.
+/// Removes the impacts from where they accumulate.
 void cut_accumulations(Reference& reference) {
   for (auto& [pair, times] : reference.impacts) {
     for (std::size_t k = 1; k < times.size(); ++k) {

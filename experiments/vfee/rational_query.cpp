@@ -20,7 +20,7 @@ constexpr std::array names{"x numerator", "x denominator", "y numerator", "y den
 
 using Fields = std::array<std::string_view, fields_per_row>;
 
-/// Nothing if there are more or fewer.
+/// The fields of a line; nothing if there are more or fewer.
 std::optional<Fields> split(std::string_view line) {
   Fields fields;
   for (std::size_t i = 0; i < fields_per_row; ++i) {

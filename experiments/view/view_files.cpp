@@ -63,7 +63,7 @@ std::string member(const std::string& summary, const std::string& name) {
   return text;
 }
 
-/// What is not free and yet moves is driven.
+/// A body that is not free and yet moves is driven.
 Mobility mobility_of(const Footage& footage, std::size_t i) {
   if (footage.actors[i].is_free) {
     return Mobility::free;
@@ -98,7 +98,7 @@ void read_frames(const Footage& footage, const TableRows& rows, ViewRun& run,
   }
 }
 
-/// Events, and what they tell of the bodies.
+/// Reads events, and the states of bodies in them.
 void read_events(const std::string& path, ViewRun& run, std::vector<std::vector<Node>>& nodes) {
   std::map<std::string, BodyIndex> index;
   for (BodyIndex i = 0; i < run.bodies.size(); ++i) {

@@ -5,6 +5,7 @@
 
 #include "core/model.hpp"
 #include "core/reading/scene_reader.hpp"
+#include "core/rotation_between.hpp"
 #include "experiments/thesis/literal_bounce.hpp"
 #include "experiments/thesis/thesis_figure.hpp"
 #include "simulation/registry.hpp"
@@ -144,8 +145,7 @@ TEST_CASE("prediction 9: a ball's box touches up to (sqrt 3 - 1) r early", "[err
   const double r = 0.25;
   const Pose floor;  // its surface is y = 0
   // The diagonal of the box turned upright.
-  const Quaternion upright =
-      Quaternion::FromTwoVectors(Vector3::Ones().normalized(), Vector3::UnitY());
+  const Quaternion upright = rotation_between(Vector3::Ones().normalized(), Vector3::UnitY());
   const auto touches = [&](const Shape& shape, double height) {
     return detector->overlaps(shape, {.position = {0.0, height, 0.0}, .orientation = upright},
                               HalfSpace{}, floor);
