@@ -13,13 +13,13 @@
 namespace kairos::ccd {
 namespace {
 
-/// How long no point of b gets out from `depth`, s. The bound of a long horizon is useless where
-/// bodies accelerate: `horizon` shrinks to what the answer needs, and is taken up by the next step.
-/// Against a half-space only its normal separates, and the gap along it says more than a speed.
+/// How long every point of b at `depth` stays inside, s. The bound over a long horizon is useless
+/// if bodies accelerate: `horizon` shrinks to what the answer needs, and the next step starts from
+/// it. Against a half-space only its normal separates, and the gap along it says more than a speed.
 double safely_inside(PairKind kind, const PairMotion& motion, const Kinematics& k,
                      const Witness& witness, double& horizon) {
   const bool plane = against_plane(kind);
-  // Along the witness the depth is an upper bound: that of cores is what was proven.
+  // Along the witness the depth is only an upper bound; for cores the proven depth is used.
   const double depth =
       kind == PairKind::cores ? proven_depth(motion, k, witness) : -witness.gap - k.error;
   while (true) {

@@ -18,27 +18,26 @@ namespace {
 
 constexpr double u = unit_roundoff;
 
-/// Evaluations that a query may take before it is `undecided`: these, and for each radian of
-/// turning so many more as bodies take that nearly touch all along, up to so many radians.
+/// Evaluations that a query may take before it is `undecided`: so many, and for each radian of
+/// turning as many more as bodies need that nearly touch all along, up to `most_radians`.
 constexpr int most_evaluations = 20'000;
 constexpr double evaluations_per_radian = 40.0;
 constexpr double most_radians = 1e4;
-/// Looks within the tolerance until a contact is sought though the gap is not roundoff yet, and
-/// from then on every so often: a graze comes nearer ever more slowly.
-constexpr int patience = 5;
-constexpr int patience_again = 8;
-/// Spinning bodies: how often the hulls of all that they pass are tried, in looks from the first
-/// on, if they turn by more than a radian still. Where these are apart nothing else has to be
-/// looked at.
+/// A contact is sought, although the gap is more than roundoff, after so many looks within the
+/// tolerance, and then again after so many more: a graze comes nearer ever more slowly.
+constexpr int looks_before_try = 5;
+constexpr int looks_between_tries = 8;
+/// For bodies that spin by more than a radian still: looks between two tries with the hulls of all
+/// that they sweep. If these hulls are apart nothing else has to be looked at.
 constexpr int looks_between_hulls = 64;
-/// Where bounds over a piece allow no step at all, a step of so small a part of it makes them anew.
+/// If the bounds over a piece allow no step at all, they are made anew for this part of it.
 constexpr double sliver_of_piece = 1.0 / 64.0;
-/// What a piece must be long at least for that, in ulps of the time.
+/// The shortest piece for which that is done, in ulps of the time.
 constexpr double ulps_of_piece = 64.0;
 /// One turn, and the rounding of both ends.
 constexpr double whole_turn = 2.0 * std::numbers::pi * (1.0 + 1e-12);
 
-/// What a query may be told beside its two motions.
+/// Options of a query beside its two motions.
 struct Effort {
   double tolerance = 0.0;    ///< m, > 0
   bool prove = true;         ///< an impact is a proven overlap, not a gap within the tolerance
@@ -46,7 +45,7 @@ struct Effort {
   int most_evaluations = 0;  ///< of parts
 };
 
-/// After how long all is as it was, s: one body spins in its place and the other stays.
+/// The period after which both are as before, s: one body spins in place and the other rests.
 double period(const PairMotion& motion, const Kinematics& k, double spin) {
   const bool alone = motion.simple() && k.v.isZero(0.0) && k.c.isZero(0.0) &&
                      (motion.turns_a() ? motion.spins_a() && !motion.turns_b()
@@ -54,7 +53,7 @@ double period(const PairMotion& motion, const Kinematics& k, double spin) {
   return alone && spin > 0.0 ? whole_turn / spin : std::numeric_limits<double>::infinity();
 }
 
-/// How many evaluations a query may take from t on: work is counted from where bodies come near.
+/// How many evaluations a query may take from t on; work is counted from where bodies come near.
 int work_allowed(const Effort& effort, double spin, double remaining) {
   const double angle = spin > 0.0 ? spin * remaining : 0.0;
   const double counted = angle < most_radians ? angle : most_radians;
@@ -84,11 +83,11 @@ double next_after(const PairLooks& pair, const BoundsAhead& bounds, const Look& 
 
 /// Whether a contact is sought from here, the n-th look in a row within the tolerance.
 bool worth_resolving(const Effort& effort, const Look& at, int n) {
-  return !effort.prove || at.within(roundoff_gap) || n % patience_again == patience;
+  return !effort.prove || at.within(roundoff_gap) || n % looks_between_tries == looks_before_try;
 }
 
-/// A contact, if what is looked at is one. Without a proof a pair that leaves is followed: it has
-/// just met.
+/// The contact at this look, if there is one. Without a proof, a pair that parts is followed on: it
+/// has just met.
 std::optional<Ending> resolve(PairLooks& pair, const Effort& effort, const Look& at,
                               bool persistent) {
   if (effort.prove) {
@@ -115,7 +114,7 @@ Ending advance_from(PairLooks& pair, BoundsAhead& bounds, const Effort& effort, 
         return *ending;
       }
     }
-    if (spent) {  // far from touch: whoever asks again from here comes through
+    if (spent) {  // far from touch: a query that starts here has all its work again
       return {ToiStatus::undecided, at, at.t()};
     }
     bounds.renew(at.t(), last_step);
@@ -137,7 +136,7 @@ Ending advance_from(PairLooks& pair, BoundsAhead& bounds, const Effort& effort, 
   }
 }
 
-/// From a time up to which they are proven apart.
+/// Advances from a time up to which the two are proven apart.
 Ending advance(PairLooks& pair, const Effort& effort, double from) {
   BoundsAhead bounds(pair.motion());
   bounds.begin(from, pair.duration() - from);
@@ -154,7 +153,7 @@ Ending advance(PairLooks& pair, const Effort& effort, double from) {
   return advance_from(pair, bounds, effort, at, last_step);
 }
 
-/// Goes to where the balls around the bodies touch, then on from there.
+/// Skips to where the balls around the bodies touch, and advances from there.
 TimeOfImpact run(PairKind kind, const PairMotion& motion, const MovingShape& a,
                  const MovingShape& b, const Window& window, Effort effort, double from) {
   PairLooks pair(kind, motion);

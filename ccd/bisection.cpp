@@ -66,7 +66,7 @@ class Bisection {
     return motion.pose((window_.start + t) - motion.start);
   }
 
-  /// In touch to roundoff, and the contact point of b does not approach a.
+  /// Whether the two touch to roundoff, and the contact point of b does not approach a.
   bool leaving(const Overlap& start) const {
     if (start.gap < -tolerance_) {
       return false;
@@ -105,7 +105,7 @@ class Bisection {
     return step;
   }
 
-  /// In an unbounded window: from here on the balls around the bodies only move apart.
+  /// Whether, in an unbounded window, the balls around the bodies only move apart from here on.
   bool gone_for_good(double t) {
     if (std::isfinite(motion_.duration()) || !motion_.simple()) {
       return false;

@@ -6,7 +6,7 @@
 namespace kairos::ccd {
 namespace {
 
-/// How long a piece is, and by how much it may be too long, in steps.
+/// Length of a piece in steps, and by how much it may be too long.
 constexpr double steps_of_piece = 4.0;
 constexpr double steps_too_long = 16.0;
 
@@ -30,7 +30,7 @@ void BoundsAhead::renew(double t, double last_step) {
     const double remaining = motion_.duration() - t;
     begin(t, last_step > 0.0 ? std::min(remaining, steps_of_piece * last_step) : remaining);
   } else if (t > made_at_ && !used_again_) {
-    // How far d is bent from what it was there, and that from what it is here.
+    // The bend is counted from another time: of d there, and from there to here.
     turn_.bend *= 2.0;
     used_again_ = true;
   }

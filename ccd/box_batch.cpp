@@ -24,7 +24,7 @@
 namespace kairos::ccd {
 namespace {
 
-/// Pairs of one loop: what is found of them stays in the first cache.
+/// Pairs in one loop, so that their results stay in the first cache.
 constexpr std::size_t block = 64;
 
 KAIROS_INLINE double magnitude(double x) { return __builtin_fabs(x); }
@@ -159,7 +159,7 @@ KAIROS_INLINE void try_edges(const Pair& p, double error, BestAxis& best) {
     const Pair::Along at = p.edges(i, j);
     const double square = p.square(i, j);
     const double f = at.separation - error;
-    // As for one pair, which needs no root where this tells already: roots are rounded.
+    // As for one pair, which takes no root if the sign decides: roots are rounded.
     const double by_sign = best.gap >= 0.0 ? 0.0 : 1.0;
     const double by_square = f * f <= best.gap * best.gap * square ? 0.0 : 1.0;
     const double below = f <= 0.0 ? by_sign : by_square;
@@ -249,7 +249,7 @@ KAIROS_WIDEST void classify_batch(const BoxBatch& pairs, std::span<Verdict> verd
       greatest_of_all(p, greatest[k], error[k]);
     }
     for (std::size_t k = 0; k < count; ++k) {
-      // Where some pair of edges cannot tell, the pair is looked at by itself.
+      // If edges cannot decide, the pair is looked at by itself.
       verdicts[first + k] = greatest[k] > error[k]    ? Verdict::separated
                             : greatest[k] < -error[k] ? Verdict::overlapping
                                                       : classify(pairs.at(first + k));

@@ -194,8 +194,8 @@ KAIROS_INLINE bool apart_beyond(const RelativeBoxes& boxes, const Operands& o, d
   if (!any(~inside)) {
     return false;
   }
-  // What nearly parallel edges hide in their error can be no more than 4 sine * size above the
-  // faces.
+  // A separation that nearly parallel edges hide in their error is at most 4 sine * size above that
+  // of the faces.
   constexpr double small_sine = 0.05;
   const double greatest =
       std::max({faces[0][0], faces[0][1], faces[0][2], faces[1][0], faces[1][1], faces[1][2]});
@@ -243,7 +243,7 @@ KAIROS_INLINE Verdict verdict_of(const Operands& o) {
   if (!any(~inside)) {
     return Verdict::overlapping;
   }
-  // Some pair of edges cannot tell.
+  // Some pair of edges cannot decide.
   return !any(~faces_inside) && overlap_by_faces(o, std::max({faces[0], faces[1], faces[2]}))
              ? Verdict::overlapping
              : Verdict::undecided;

@@ -14,7 +14,7 @@ constexpr double u = unit_roundoff;
 /// Below this sine the separations of edges, whose error is that of a unit direction over the sine,
 /// are evaluated again along unit directions.
 constexpr double small_sine = 0.05;
-/// Nearer than this part of their extents boxes may be in touch along edges that the error hides.
+/// Boxes nearer than this part of their extents may touch along edges that the error hides.
 constexpr double near = 1e-3;
 
 /// a x b, every component to 2 ulp of itself: the cross product of nearly parallel vectors points
@@ -72,8 +72,8 @@ WitnessFrame frame_across(const PairMotion& motion, const Kinematics& k, const V
   return motion.turns_b() ? WitnessFrame::b : WitnessFrame::world;
 }
 
-/// A direction that is across edges of the boxes but for `noise` made so to roundoff: along what is
-/// left of it an edge would reach out by its length.
+/// Makes a direction that is across edges of the boxes, but for `noise`, so to roundoff: by the
+/// rest, an edge would reach out in proportion to its length.
 Vector3 snapped(const Kinematics& k, const Vector3& n, double noise) {
   Vector3 across[6];
   int count = 0;
@@ -90,7 +90,7 @@ Vector3 snapped(const Kinematics& k, const Vector3& n, double noise) {
   Vector3 exact = n;
   if (count == 1) {
     exact -= across[0] * across[0].dot(exact);
-    exact -= across[0] * across[0].dot(exact);  // what the first time left by rounding
+    exact -= across[0] * across[0].dot(exact);  // the rounding of the first time
   } else {
     const Vector3 cross = accurate_cross(across[0], across[1]);
     const double length = cross.norm();
@@ -99,7 +99,7 @@ Vector3 snapped(const Kinematics& k, const Vector3& n, double noise) {
   return exact.normalized();
 }
 
-/// The direction of the distance where it is not one of the 15 axes: from corner to corner or edge.
+/// The direction of the distance if it is none of the 15 axes: from a corner to a corner or edge.
 Witness along_distance(const PairMotion& motion, const Kinematics& k, const Witness& best) {
   const NearestPoints nearest = nearest_of_boxes(relative_boxes(motion, k));
   if (!(nearest.distance > 0.0)) {
@@ -119,8 +119,8 @@ Witness along_distance(const PairMotion& motion, const Kinematics& k, const Witn
   return witness.gap > best.gap ? witness : best;
 }
 
-/// Pairs of nearly parallel edges, whose error hides from the search for the greatest what they
-/// separate.
+/// Looks at pairs of nearly parallel edges, whose separation the error hides from the search for
+/// the greatest.
 Witness among_small_sines(const PairMotion& motion, const Kinematics& k, Witness best) {
   const Matrix3 R_AB = k.R_WA.transpose() * k.R_WB;
   for (int axis = 6; axis < axis_count; ++axis) {
@@ -204,7 +204,7 @@ bool boxes_proven_overlapping(const PairMotion& motion, const Kinematics& k,
   if (all_separations_below(motion.half_a(), k.R_WA, motion.half_b(), k.R_WB, k.d, k.error)) {
     return true;
   }
-  // Edges that are nearly parallel cannot tell unnormalised: along unit directions they can.
+  // Nearly parallel edges decide nothing by unnormalised directions; by unit ones they can.
   for (int axis = 0; axis < axis_count; ++axis) {
     if (!(along_axis(motion, k, axis).gap + reach < -2.0 * k.error)) {
       return false;

@@ -10,7 +10,7 @@
 namespace kairos::ccd {
 namespace {
 
-/// Bodies more than so many times as large as most are not in cells.
+/// Bodies this many times as large as most others are not in cells.
 constexpr double unusual = 3.0;
 /// Bodies to a cell at which looking through cells costs as much as crossing them.
 constexpr double bodies_to_a_cell = 0.36;
@@ -46,7 +46,7 @@ CellLayout::CellLayout(const Model& model, double tolerance, const CellSize& ask
       n += 1.0;
     }
   }
-  // A detector leaves at most its tolerance; twice that is what no impact law acts across.
+  // A detector leaves a gap of its tolerance at most; no impact law acts across twice that.
   slack = 1e-3 * radius + 4.0 * tolerance;
   margin = asked.margin * radius / 16.0;
   const double least = 2.0 * (radius + slack + margin);
@@ -59,7 +59,7 @@ CellLayout::CellLayout(const Model& model, double tolerance, const CellSize& ask
   const double usual = std::max(least, asked.width * cube_root(size.prod() * bodies_to_a_cell / n));
   width.setConstant(usual);
   farthest = std::min(0x1p36 * margin, 0x1p29 * usual);  // cells are counted in 32 bits
-  // Not more cells than bodies call for: along the longest axis they then coincide.
+  // No more cells than the number of bodies calls for: along the longest axis they then coincide.
   double all = 1.0;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto axis = static_cast<Eigen::Index>(k);
@@ -189,7 +189,7 @@ void CellGrid::block(const CellIndex& cell, const CellIndex& wide, std::vector<I
       const Cell* const row = &cells_[at(0, y, z)];
       std::int64_t x = first[0];
       for (std::int64_t dx = -wide[0]; dx <= wide[0]; ++dx, x = turns ? next(x, 0) : x + 1) {
-        // Both places are copied, and as many count as it has: most have none or one.
+        // Both places are copied, though most cells have none or one: this saves a branch.
         std::copy_n(row[x].bodies.begin(), room, end);
         end += row[x].count;
         chains &= row[x].next;
@@ -202,7 +202,7 @@ void CellGrid::block(const CellIndex& cell, const CellIndex& wide, std::vector<I
   }
 }
 
-/// What the cells of a block have no room for.
+/// Appends the bodies for which the cells of a block have no room.
 void CellGrid::append_chains(const CellIndex& first, const CellIndex& wide,
                              std::vector<Id>& out) const {
   for (std::int64_t dz = 0; dz <= 2 * wide[2]; ++dz) {
@@ -219,7 +219,7 @@ void CellGrid::append_chains(const CellIndex& first, const CellIndex& wide,
 }
 
 void CellGrid::entered(const CellIndex& before, const CellIndex& now, std::vector<Id>& out) const {
-  // As a rule it goes one cell on along one axis: a layer of nine.
+  // Most often a body moves one cell on along one axis: to a layer of nine.
   std::size_t axis = 3;
   std::int64_t steps = 0;
   for (std::size_t k = 0; k < 3; ++k) {

@@ -239,8 +239,8 @@ class Cells final : public Neighbourhood {
     }
   }
 
-  /// Appends whom `found_` holds beside i, each as the image that is around the cell of i: bodies
-  /// that fewer than four cells are apart on the torus have one.
+  /// Appends the bodies in `found_` but i, each as its image around the cell of i: bodies fewer
+  /// than four cells apart on the torus have one.
   void tell(BodyIndex i, std::vector<Neighbour>& out) const {
     if (periodic_ == nullptr) {
       const std::size_t before = out.size();
@@ -279,7 +279,7 @@ class Cells final : public Neighbourhood {
     std::array<bool, 3> everywhere{};
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
-      // One more on both sides: these quotients are rounded.
+      // One cell more on both sides, as these quotients are rounded.
       const double per_width = layout_.per_width[axis];
       const double first = std::floor((swept.lower[axis] - beyond) * per_width) - 1.0;
       const double last = std::floor((swept.upper[axis] + beyond) * per_width) + 1.0;

@@ -13,8 +13,8 @@
 namespace kairos::ccd {
 namespace {
 
-/// Neither do the shapes overlap at these poses, nor could they in exact arithmetic, nor are they
-/// nearer than their error radii. Balls have it from their closed forms: there what anyone computes
+/// Whether the shapes do not overlap at these poses, could not in exact arithmetic, and are farther
+/// apart than their error radii. For balls the closed forms show the rest: the overlap as computed
 /// is enough.
 bool clear_at_poses(const MovingShape& a, const Pose& pose_a, const MovingShape& b,
                     const Pose& pose_b) {

@@ -9,12 +9,12 @@ namespace kairos::ccd {
 namespace {
 
 constexpr double step_rounding = 64.0 * unit_roundoff;
-/// A direction this close to a face, as a sine, has all of the face for its deepest place.
+/// If a direction is this close to a face, by its sine, the whole face counts as deepest.
 constexpr double along_face = 1e-3;
 /// Of the fifteen axes, the first that is a cross product of edges.
 constexpr int first_edges = 6;
 
-/// A box, a ball, or what is left of it at one instant.
+/// A box or a ball at one instant, with what is needed of it here.
 struct Body {
   Vector3 half;
   Matrix3 axes;
@@ -54,7 +54,7 @@ double time_inside(const Body& host, const Body& guest, const Way& way, const Pl
                         2.0 * host.w_bound * (speed + host.w_bound * distance);
   const Vector3 at = host.axes.transpose() * y;
   const Vector3 moves = host.axes.transpose() * rate;
-  // It may be outside of one face by what the bodies are rounded by.
+  // It may be outside of one face by the roundoff of the bodies.
   int rounded = 0;
   (host.half - at.cwiseAbs()).minCoeff(&rounded);
   double inside = horizon;

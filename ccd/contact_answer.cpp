@@ -15,7 +15,7 @@ namespace kairos::ccd {
 namespace {
 
 constexpr double u = unit_roundoff;
-/// Whoever evaluates the poses sees absolute coordinates, each rounded: a gap within 32 u of both
+/// A caller that evaluates the poses has rounded absolute coordinates: a gap within 32 u of both
 /// bodies' may look like an overlap.
 constexpr double pose_rounding = 64.0 * u;
 /// Roundoff of a rotated extent, as a part of the size: as in `measure_overlap`.
@@ -26,7 +26,7 @@ struct NearestOnBoth {
   Vector3 on_b;
 };
 
-/// Of two boxes, in the frame of a.
+/// The nearest points of two boxes, in the frame of a.
 NearestOnBoth nearest_on_boxes(const PairMotion& motion, const Look& at) {
   const Witness& w = at.witness;
   const RelativeBoxes boxes = relative_boxes(motion, at.k);

@@ -12,13 +12,13 @@
 namespace kairos::ccd {
 namespace {
 
-/// As a part of what it is compared with: rounding of times.
+/// Relative rounding of times.
 constexpr double end_rounding = 128.0 * unit_roundoff;
 /// Twice the error is the least gap that can be proven positive at all.
 constexpr double least_gap = 2.0;
-/// Beyond so many errors the bodies are apart at a look, whichever way both were rounded.
+/// At a gap of so many errors the bodies are apart, whichever way both were rounded.
 constexpr double clear_gap = 4.0;
-/// In touch at the start: nothing that stays above -16 errors is more than the roundoff of it.
+/// A pair in touch at the start whose gap stays above -16 errors may have roundoff only.
 constexpr double touch_depth = 16.0;
 /// Doublings of a look ahead: all that a double has between an ulp of 0 and a window; or, where
 /// coming nearer may serve better, a few.
@@ -50,8 +50,8 @@ double first_look(const PairMotion& motion, const Look& at, double length, doubl
                    std::isfinite(crossing) ? crossing : unit});
 }
 
-/// They are apart at both ends, or nearly: a time of a proven overlap where the gap is least
-/// between.
+/// The two are apart at both ends, or nearly: finds a time of a proven overlap between, where the
+/// gap is least.
 std::optional<double> overlap_between(PairLooks& pair, double low, double high) {
   assert(low <= high);
   for (int i = 0; i < most_halvings; ++i) {

@@ -142,8 +142,8 @@ ConvexCore::Bend ConvexCore::bend(const Vector3& m) const {
   return {sizes_.x() / length, Vector3(m.z() / length, 0.0, -m.x() / length)};
 }
 
-/// All vertices are asked: walking uphill along edges may end short of the highest by any amount
-/// where edges are short.
+/// All vertices are compared: a walk uphill along edges may end below the highest by any amount if
+/// edges are short.
 std::uint32_t ConvexCore::support_vertex(const Vector3& m) const {
   const std::vector<Vector3>& vertices = polytope_->vertices;
   std::size_t best = 0;
@@ -276,8 +276,8 @@ double ConvexCore::spun_support(const Vector3& n, const Vector3& w) const {
   if (kind_ == Kind::polytope || kind_ == Kind::triangle || kind_ == Kind::box) {
     return most;
   }
-  // About nearly its own axis it passes little more than itself: a turn about w differs from one
-  // about y by twice the angle between them at most.
+  // Turned about nearly its own axis it sweeps little more than itself: a turn about w differs from
+  // one about y by at most twice the angle between them.
   const double tilt = 4.0 * std::sqrt(w.x() * w.x() + w.z() * w.z()) * radius_;
   return std::min(most, support(n) + tilt);
 }

@@ -13,7 +13,7 @@ namespace kairos::ccd {
 namespace {
 
 constexpr double u = unit_roundoff;
-/// Corners that stand for a circle: some of their directions are those of its box.
+/// Number of corners that stand for a circle; some of them lie on the axes of its box.
 constexpr int around = 16;
 /// Heights within so many roundings of the size are level.
 constexpr double level = 1024.0 * u;
@@ -78,7 +78,7 @@ void for_each_corner_here(const ConvexCore& core, const Vector3& m, const Visit&
         visit(core.corner(i));
       }
       return;
-    case ConvexCore::Kind::placed:  // a part is none that is placed itself
+    case ConvexCore::Kind::placed:  // a placed part is never placed itself
       return;
   }
 }
@@ -294,7 +294,7 @@ CorePatch core_patch(const CorePair& pair, const Vector3& n, double within) {
   } else {
     found = common(a, b, plane);
   }
-  if (found.size == 0) {  // they lie beside each other
+  if (found.size == 0) {  // the outlines lie beside each other
     found.add(b.centroid());
     of_b = true;
   }

@@ -122,7 +122,7 @@ class DynamicTree final : public BroadPhase {
     free_ = i;
   }
 
-  /// Down the side whose box grows least, while that costs less than a new parent here.
+  /// Goes down the side whose box grows least, while that costs less than a new parent here.
   NodeIndex sibling_for(const Aabb& box) const {
     NodeIndex i = root_;
     while (!at(i).leaf()) {

@@ -76,7 +76,7 @@ class Polyhedron {
  private:
   [[nodiscard]] const Vector3& w(int i) const { return points_[static_cast<std::size_t>(i)].w; }
 
-  /// One more point, off what those that are there span.
+  /// Adds one more point that is off the span of the others.
   bool add_beside() {
     const double size = pair_.size();
     for (int k = 0; k < 6; ++k) {
@@ -145,7 +145,7 @@ class Polyhedron {
     rim_[static_cast<std::size_t>(rim_count_++)] = {from, to};
   }
 
-  /// False, and nothing is changed, where rounding lets no surface around 0 come out.
+  /// Adds a point; false, and nothing is changed, if rounding leaves no surface around 0.
   bool add_point(const DifferencePoint& p) {
     const int at = count_;
     points_[static_cast<std::size_t>(at)] = p;
@@ -180,8 +180,8 @@ class Polyhedron {
     return true;
   }
 
-  /// How far the plane of a face is proven to be from 0, the points being where they truly are;
-  /// negative: nothing is proven.
+  /// Proven distance of the plane of a face from 0 in exact arithmetic; negative: nothing is
+  /// proven.
   [[nodiscard]] double proven_depth(const Face& face, double error) const {
     std::array<Vector3, 3> x;
     for (std::size_t i = 0; i < 3; ++i) {

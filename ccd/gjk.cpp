@@ -93,7 +93,7 @@ Part of_tetrahedron(const Simplex& s) {
   return best;
 }
 
-/// Leaves of the simplex what its point nearest to 0 lies in; false if 0 is inside.
+/// Reduces the simplex to the part that its point nearest to 0 lies in; false if 0 is inside.
 bool reduce(Simplex& s) {
   Part part;
   switch (s.size) {

@@ -8,7 +8,7 @@
 namespace kairos::ccd {
 namespace {
 
-/// Beyond what moving a box by whole periods rounds, of its coordinates.
+/// More than the relative rounding of moving a box by whole periods.
 constexpr double rounding = 8.0 * std::numeric_limits<double>::epsilon();
 
 bool is_finite(const Aabb& box, int k) {
@@ -124,7 +124,7 @@ void ImageBoxes::look(const Aabb& box, const Image& at, const Image& of_box,
   boxes_->overlapping(seen, found_);
   for (const BodyIndex j : found_) {
     if (!kept_[j].box.overlaps(seen)) {
-      continue;  // a broad phase may tell more, and would do so once for each image
+      continue;  // a broad phase may report pairs beyond, and would once for each image
     }
     if (std::holds_alternative<HalfSpace>(model_.shape(j))) {
       if (is_zero(at)) {

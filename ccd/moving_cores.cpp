@@ -7,14 +7,14 @@
 namespace kairos::ccd {
 namespace {
 
-/// Of the distance: how near below it a separation along a witness has to be.
+/// How near below the distance a separation along a witness has to be, as a part of it.
 constexpr double precision = 1e-8;
 /// A direction off by so much from a face's normal, or from across an edge, is fixed to it, rad.
 constexpr double feature_noise = 1e-6;
 /// Edges with a smaller sine do not tell a direction.
 constexpr double least_sine = 1e-3;
 
-/// Fixed to the edges of both, if along them it separates nearly as well.
+/// Fixes the direction to edges of both, if it then separates nearly as well.
 bool fix_to_edges(const PairMotion& motion, const Kinematics& k, const Vector3& a, const Vector3& b,
                   Witness& witness) {
   const Vector3 cross = a.cross(b);

@@ -15,7 +15,7 @@ namespace kairos::ccd {
 namespace {
 
 constexpr double u = unit_roundoff;
-/// Of the distance: how near below it a separation of two parts, or of boxes, is sought.
+/// How near below the distance a separation of two parts or boxes is sought, as a part of it.
 constexpr double precision = 1e-14;
 constexpr double box_precision = 0.3;
 /// Parts that overlap along a normal by more, as a part of the size, touch elsewhere.
@@ -62,7 +62,7 @@ class Pair {
     return best;
   }
 
-  /// Of all parts whose gap is at most `most` and along n no less than `gap`.
+  /// Points of all parts whose gap is at most `most` and along n no less than `gap`.
   std::vector<TouchingPoint> points(const Vector3& n, double gap, double most) {
     std::vector<TouchingPoint> found;
     heap_.clear();
@@ -110,7 +110,7 @@ class Pair {
     double lower;
     ObbChild a, b;
   };
-  /// Of equals, too, one comes first: a heap of another library would take another.
+  /// Equal keys have an order, too: otherwise the heap of another library could take another.
   static bool later(const Key& x, const Key& y) {
     return std::tuple(x.lower, x.a, x.b) > std::tuple(y.lower, y.a, y.b);
   }
@@ -258,7 +258,7 @@ Vector3 middle(const std::vector<TouchingPoint>& corners) {
   return polygon.centroid();
 }
 
-/// A point of a body's part that hangs together, for each of them.
+/// Tests a point of each connected part of a body.
 bool has_point_inside(const Shape& solid, const Pose& pose_s, const Shape& other,
                       const Pose& pose_o) {
   const auto* mesh = std::get_if<Mesh>(&solid);

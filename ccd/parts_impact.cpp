@@ -19,9 +19,9 @@ namespace kairos::ccd {
 namespace {
 
 constexpr double u = unit_roundoff;
-/// Boxes nearer than so much of their size are opened: their parts are told apart for longer.
+/// Boxes nearer than this part of their size are opened: their parts are apart for longer.
 constexpr double near = 0.1;
-/// Of the distance of two boxes: how near below it a separation is sought.
+/// How near below the distance of two boxes a separation is sought, as a part of it.
 constexpr double box_precision = 0.1;
 /// Looks at two parts before others have their turn.
 constexpr int looks_at_parts = 24;
@@ -30,9 +30,9 @@ constexpr int looks_at_parts = 24;
 constexpr int most_looks = 1'000'000;
 constexpr double looks_per_radian = 1'000.0;
 constexpr double most_radians = 1e3;
-/// Where rounding hides whether two parts touch, others are asked for so many times as long.
+/// If rounding hides whether two parts touch, other parts are asked for this many times as long.
 constexpr double proofs_follow = 64.0;
-/// Of the rest of the window: on how much of it motions that are no parabolas are bounded at once.
+/// Part of the rest of the window for which motions that are no parabolas are bounded at once.
 constexpr double piece = 0.125;
 
 class PartsImpact {
@@ -90,7 +90,7 @@ class PartsImpact {
     double t;
     ObbChild a, b;
   };
-  /// Of equals, too, one comes first: a heap of another library would take another.
+  /// Equal keys have an order, too: otherwise the heap of another library could take another.
   static bool later(const Key& x, const Key& y) {
     return std::tuple(x.t, x.a, x.b) > std::tuple(y.t, y.a, y.b);
   }
@@ -138,7 +138,7 @@ class PartsImpact {
     bounded_ = true;
   }
 
-  /// At the time of the key: more time for what is far enough apart, the rest is opened.
+  /// Looks at a pair at the time of its key: gives it more time if it is far apart, or opens it.
   void look(const Key& key) {
     stack_.clear();
     stack_.push_back(key);
@@ -190,7 +190,7 @@ class PartsImpact {
     return next >= end_ || witness.gap > near * size ? next : at.t;
   }
 
-  /// Two parts, as two bodies, until the end or the first contact that is known.
+  /// Follows two parts, as if they were bodies, until the end or the first known contact.
   void follow(const Key& at) {
     PlacedCore memory_a, memory_b;
     const ConvexCore core_a = parts_a_.core(at.a, memory_a);
@@ -217,7 +217,7 @@ class PartsImpact {
       case ToiStatus::undecided:
         break;
     }
-    // The looks are done: others have their turn.
+    // The looks of this pair are spent: others have their turn.
     if (toi.t_hi == toi.t_lo && toi.t_lo > at.t && !plane_) {
       push({toi.t_lo, at.a, at.b});
       return;
@@ -245,7 +245,7 @@ class PartsImpact {
     }
   }
 
-  /// Where rounding hides whether two parts touch, until others are proven to: one contact.
+  /// Makes one contact of the proven one and those before it that rounding leaves open.
   [[nodiscard]] TimeOfImpact answer() {
     std::optional<TimeOfImpact> toi = first_;
     if (hidden_ && (!toi || hidden_->t_lo < toi->t_lo)) {
@@ -291,7 +291,7 @@ class PartsImpact {
     return toi;
   }
 
-  /// The work is done: proven apart up to t.
+  /// The answer when the work is spent: proven apart up to t.
   [[nodiscard]] TimeOfImpact exhausted(double t) {
     const Pose pose_a = a_.motion.pose(local_time(a_.motion, window_, t));
     const Pose pose_b = b_.motion.pose(local_time(b_.motion, window_, t));

@@ -12,7 +12,7 @@ namespace kairos::ccd {
 namespace {
 
 constexpr double u = unit_roundoff;
-/// Of the distance: how near below it a separation is sought.
+/// How near below the distance a separation is sought, as a part of it.
 constexpr double precision = 1e-14;
 
 /// Two shapes placed: cores, and what bounds the rounding of a separation.

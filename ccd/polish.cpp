@@ -12,7 +12,7 @@ namespace {
 constexpr double u = unit_roundoff;
 /// A face or a pair of edges is tried if its direction is off by less, rad.
 constexpr double snapping = 2e-3;
-/// A direction that is across an edge but for so much stays across it.
+/// A direction that is across an edge within this angle stays across it, rad.
 constexpr double pinned = 1e-4;
 constexpr int most_steps = 12;
 

@@ -57,7 +57,7 @@ bool stays_positive(const QuadraticGap& gap) {
   return lowest > exact.error(-b / (2.0 * c)) + 4.0 * unit_roundoff * std::abs(lowest);
 }
 
-/// Positive itself, but not less its error: nothing is known from some time on.
+/// The gap is positive, but not if its error is subtracted: unknown from some time on.
 FirstDescent lost_in_error(const QuadraticGap& gap) {
   const double b = from_below(gap.c1, gap.e1);
   const double c = from_below(gap.c2, gap.e2);

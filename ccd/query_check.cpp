@@ -104,8 +104,8 @@ void check_motion(const char* body, const Motion& motion, const Window& window) 
   }
 }
 
-/// sum |c_k| s^k: the polynomial is no larger up to s. High coefficients of short steps are large,
-/// and harmless; of an endless window the coefficients themselves are told.
+/// sum |c_k| s^k, a bound of the polynomial up to s. High coefficients of short steps may be large
+/// without harm; in an endless window the coefficients themselves are checked.
 template <int N>
 double most_within(const Polynomial<N>& p, double s) {
   double size = 0.0;

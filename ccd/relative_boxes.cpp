@@ -85,7 +85,7 @@ Verdict classify(const RelativeBoxes& s, int& axis) {
   }
   const Verdict verdict = classify(s);
   if (verdict == Verdict::separated) {
-    // The greatest separation lasts longest, unless it is within rounding itself.
+    // The greatest separation lasts longest, unless it is roundoff itself.
     axis = greatest_separation(s).axis;
     for (int other = 0; !separates(axis); ++other) {
       axis = other;

@@ -11,12 +11,12 @@ namespace {
 
 constexpr double u = unit_roundoff;
 
-/// What is taken off a value before a root is sought, as a part of it: where the discriminant
-/// cancels, its terms are off by some 8 u of the value.
+/// Part of a value that is subtracted before a root is sought: if the discriminant cancels, its
+/// terms are off by some 8 u of the value.
 constexpr double root_rounding = 32.0 * u;
 /// A step is shortened by this part: the roundings of a root, and of the sum t + h.
 constexpr double step_rounding = 64.0 * u;
-/// How far beyond the root of the tangent a convex f may reach that is worth a look.
+/// How far a convex f must reach beyond the root of its tangent to be worth a look.
 constexpr double beyond_tangent = 1.25;
 /// A step that uses so much of its horizon is good enough: no other can be more than twice as long.
 constexpr double well_used = 0.5;
@@ -24,8 +24,8 @@ constexpr double well_used = 0.5;
 constexpr double support_rounding = 4.0 * u;
 /// How far ahead, rad, the highest point is asked for where several are at first.
 constexpr double kink = 1e-9;
-/// Horizons tried for one step: each halves the logarithm of what is open, so that 6 leave of 20
-/// orders of magnitude a factor of 2.
+/// Horizons tried for one step. Each halves the logarithm of the open range, so that 6 reduce 20
+/// orders of magnitude to a factor of 2.
 constexpr int most_horizons = 6;
 
 }  // namespace
@@ -267,7 +267,7 @@ double SeparationFunction::first_reach(double horizon) const {
   if (!direction_turns()) {
     const double root = first_root(value_, least_slope_, curvature(horizon));
     const double reach = std::min(horizon, root);
-    // Where nothing ends it, a radian does.
+    // If nothing else ends the horizon, a radian does.
     return std::isfinite(reach) ? reach : 1.0 / (turn_.w_a + turn_.w_b);
   }
   double reach = std::min(horizon, 1.0 / (turn_.w_a + turn_.w_b));
@@ -343,7 +343,7 @@ double SeparationFunction::advance_from_touch(double horizon) const {
     const double slope = (has_terms() ? chord(reach) : slope_) - rate_error_;
     const double discriminant = slope * slope - 4.0 * start * second;
     const double root = std::sqrt(discriminant);
-    // It may go down at first by what rounding hides.
+    // It may descend at first by less than roundoff.
     const bool leaves = slope > 0.0 || (second > 0.0 && slope * slope < 16.0 * error_ * second);
     if (leaves && std::isfinite(root) && slope + root > 0.0) {
       const double end = second < 0.0 ? -(slope + root) / (2.0 * second) : reach;

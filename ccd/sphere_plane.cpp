@@ -163,7 +163,7 @@ struct SphereAbovePlane {
                                  ? plane.position[0]
                                  : plane.position(local_time(plane, window, toi.t_lo));
       height = up.dot(centre - origin);
-      // Along an axis that is what anyone computes; along any other it is off by some roundings.
+      // Along an axis every caller computes this height; along any other with some roundings.
       const double rounding = along_axis ? 0.0 : 8.0 * u * ((centre - origin).lpNorm<1>() + radius);
       const double reach = radius + (sphere.error_radius + plane.error_radius);
       if (height - reach > rounding || toi.t_lo == 0.0 || toi.status == ToiStatus::overlapping) {

@@ -89,7 +89,7 @@ FirstDescent bracket(const DistanceGap& gap, double root, double limit) {
   return found;
 }
 
-/// No velocity but what rounding may hide, and that is at most this `speed`.
+/// The relative velocity is zero but for roundoff, which is at most `speed`.
 FirstDescent at_relative_rest(const DistanceGap& gap, double start, bool in_touch, double speed) {
   if (in_touch) {
     return {Descent::sliding, 0.0, infinity};

@@ -10,7 +10,7 @@
 namespace kairos::ccd {
 namespace {
 
-/// Two shapes in a window, looked at here and there.
+/// Two shapes in a window, and looks at them at some times.
 struct Look {
   const MovingShape& a;
   const MovingShape& b;
@@ -72,7 +72,7 @@ class Linear final : public ShapeDetector {
     const double touch = tolerance > 0.0 ? tolerance : default_tolerance(a, b, window);
     const Look look{a, b, window};
     const Overlap start = look.at(0.0);
-    // What has just met, and parts, is where rounding left it.
+    // A pair that has just met, and parts, may overlap by roundoff.
     const bool leaving = start.gap >= -touch && look.parting_speed(0.0, start) >= 0.0;
     if (start.overlapping && !leaving) {
       return answer(ToiStatus::overlapping, 0.0, start, 1);
@@ -116,7 +116,7 @@ class CvodeRootfinding final : public ShapeDetector {
     if (!met) {
       return answer(ToiStatus::separated, window.duration, end, 2);
     }
-    // A hair before the end, where the motion is replaced.
+    // Just before the end, where the motion is replaced.
     return answer(ToiStatus::impact, window.duration * (1.0 - 1e-12), end, 2);
   }
 };

@@ -102,7 +102,7 @@ Reach swept_reach(const Shape& shape, const Motion& motion, double s0, double s1
   }
   Reach reach = translation_reach(motion.position, s0, s1, n);
   const auto* sphere = std::get_if<Sphere>(&shape);
-  // What is no ball reaches no further than the box around it.
+  // A shape that is no ball reaches no farther than the box around it.
   const double extent =
       (sphere != nullptr ? sphere->radius
                          : turning_extent(bounding_box(shape), motion, s0, s1, n)) *

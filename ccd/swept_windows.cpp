@@ -42,7 +42,7 @@ Instant SweptWindows::enter(BodyIndex i, const MovingShape& moving, Instant t, I
   }
   const double s = t - moving.motion.start;
   Aabb swept = swept_aabb(moving.shape, moving.motion, s, s + (std::max(end, t) - t));
-  // Within its tolerance a detector may tell a pair to touch: that must not depend on who is asked.
+  // A detector may report contact anywhere within its tolerance, and no such pair may be left out.
   const double near = tolerance_ > 0.0 ? tolerance_ : 1e-9 * bounding_radius(moving.shape);
   if (std::isfinite(near)) {
     swept.lower.array() -= near;

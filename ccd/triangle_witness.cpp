@@ -21,7 +21,7 @@ class Search {
     }
   }
 
-  /// What x separates, its length divided out; negative infinity for 0.
+  /// The separation along x, divided by its length; negative infinity for 0.
   double try_along(const Vector3& x) {
     const double length = x.norm();
     if (!(length > 0.0)) {

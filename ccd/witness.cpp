@@ -144,7 +144,7 @@ Witness between_hulls(PairKind kind, const PairMotion& motion, const Kinematics&
     return best;
   }
   keep_better(k.d);
-  // Faces that stay, axes of turning, and across these.
+  // Tries faces that do not turn, axes of turning, and directions across these.
   for (const bool second : {false, true}) {
     const bool turns = second ? motion.turns_b() : motion.turns_a();
     if (turns) {

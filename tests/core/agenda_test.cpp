@@ -29,14 +29,14 @@ TEST_CASE("agenda: earliest first; at one instant by what is due, then by name",
   CHECK(agenda.before(1, 0));
   const Instant early{1.0, -1e-20};  // the corrections tell the two apart
   const Instant late{1.0, 0.0};
-  agenda.push(late, Due::impact, 0, 0);
-  agenda.push(late, Due::impact, 1, 1);
-  agenda.push(late, Due::segment_end, 0, 0);
-  agenda.push(early, Due::impact, 0, 0);
+  agenda.push(late, DueKind::impact, 0, 0);
+  agenda.push(late, DueKind::impact, 1, 1);
+  agenda.push(late, DueKind::segment_end, 0, 0);
+  agenda.push(early, DueKind::impact, 0, 0);
   CHECK_FALSE(agenda.due_before(early));
   CHECK(agenda.due_before(late));
   CHECK(agenda.pop().time == early);
-  CHECK(agenda.pop().due == Due::segment_end);
+  CHECK(agenda.pop().kind == DueKind::segment_end);
   CHECK(agenda.pop().a == 1);
   CHECK(agenda.pop().a == 0);
   CHECK_FALSE(agenda.due_before(Instant::never()));
@@ -45,12 +45,12 @@ TEST_CASE("agenda: earliest first; at one instant by what is due, then by name",
 TEST_CASE("agenda: a new motion makes stale what was predicted of the old one", "[agenda]") {
   const Model model = two_balls();
   Agenda agenda(model);
-  agenda.push(Instant{1.0}, Due::impact, 1, 0, 0.5, false);
+  agenda.push(Instant{1.0}, DueKind::impact, 1, 0, 0.5, false);
   agenda.renew(0);
-  agenda.push(Instant{2.0}, Due::impact, 1, 0);
+  agenda.push(Instant{2.0}, DueKind::impact, 1, 0);
   const DueEvent first = agenda.pop();
   CHECK(first.stale);
-  CHECK(first.patience == 0.5);
+  CHECK(first.bracket == 0.5);
   CHECK_FALSE(first.decided);
   CHECK_FALSE(agenda.pop().stale);
 }

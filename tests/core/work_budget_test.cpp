@@ -7,7 +7,7 @@ using namespace kairos;
 namespace {
 
 DueEvent event_at(Instant t, BodyIndex a = 0, BodyIndex b = 1) {
-  return {.time = t, .due = Due::impact, .a = a, .b = b};
+  return {.time = t, .kind = DueKind::impact, .a = a, .b = b};
 }
 
 }  // namespace

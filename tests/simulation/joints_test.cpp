@@ -123,6 +123,53 @@ TEST_CASE("problem 16: a pendulum strikes a wall, again and again, and rests", "
   CHECK(largest_drift({result, trajectory}, model) < 1e-9);  // an impact acts between steps
 }
 
+TEST_CASE("joints: what one body at rest passes on is predicted of all that hang on it",
+          "[joints]") {
+  // A block on a vertical slider rests on a post until a ball strikes it; a plate that is welded to
+  // it then meets a ceiling 14 mm above, within the first step.
+  SceneBuilder builder("outrigger");
+  builder.set("duration", 2.1).set("frame", 1.0 / 60.0).set("G", g);
+  builder
+      .body("block", {{"entity", "body"},
+                      {"half_extents", Vector3(0.1, 0.1, 0.1)},
+                      {"mass", 1},
+                      {"restitution", 0.7},
+                      {"position", Vector3(0.0, 0.21, 0.0)}})
+      .body("plate", {{"entity", "body"},
+                      {"half_extents", Vector3(0.1, 0.02, 0.1)},
+                      {"mass", 1},
+                      {"position", Vector3(1.0, 0.21, 0.0)}})
+      .body("post", {{"entity", "wall"},
+                     {"half_extents", Vector3(0.1, 0.1, 0.1)},
+                     {"position", Vector3(0.0, 0.0, 0.0)}})
+      .body("ceiling", {{"entity", "wall"},
+                        {"half_extents", Vector3(0.2, 0.001, 0.2)},
+                        {"position", Vector3(1.0, 0.235, 0.0)}})
+      .body(
+          "ball",
+          {{"entity", "ball"}, {"radius", 0.1}, {"mass", 5}, {"position", Vector3(0.0, 20.0, 0.0)}})
+      .add("joint", {{"kind", "slider"},
+                     {"bodies", std::vector<std::string>{"block"}},
+                     {"anchor", Vector3(0.0, 0.21, 0.0)},
+                     {"axis", Vector3(0.0, 1.0, 0.0)}})
+      .add("joint", {{"kind", "weld"}, {"bodies", std::vector<std::string>{"block", "plate"}}});
+  const Model model(builder.scene());
+  Trajectory trajectory;
+  const RunResult result = simulate(model, fine(2.1), trajectory);
+  CAPTURE(result.reason);
+  REQUIRE(result.status == RunStatus::completed);
+  int struck = 0;
+  for (const Event& event : trajectory.events()) {
+    if (event.kind == EventKind::impact &&
+        (model.body(event.a).name == "ceiling" || model.body(event.b).name == "ceiling")) {
+      ++struck;
+      // At t_lo of a proven bracket: above minus the roundoff of the coordinates.
+      CHECK(event.contact.gap > -1e-14);
+    }
+  }
+  CHECK(struck > 0);
+}
+
 TEST_CASE("joints: constraints hold to 1e-12 of the size at the end of every step", "[joints]") {
   for (const char* name : {"pendulum", "double-pendulum", "slider-crank", "aero"}) {
     CAPTURE(name);

@@ -14,7 +14,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Accelerations below this part of the largest are roundoff.
 constexpr double roundoff = 1e-12;
-/// What begins has had a moment to do so, of the window.
+/// Part of the window after which something that begins to slide has begun.
 constexpr double begun = 1e-6;
 
 /// sum |c_k . axis| s^k.
@@ -92,7 +92,7 @@ DrivenMode driven_mode(const DrivenTouch& touch, const Motion& under) {
   const double most_friction = touch.friction * weight;
   Vector3 d = x;  // where it slides
   if (slip.norm() <= touch.still) {
-    // What friction must give along x: A - pull.
+    // Acceleration that friction must give along x: A - pull.
     const double offset = -x.dot(pull);
     double ends = infinity;
     bool forwards = true;

@@ -14,25 +14,26 @@ inline namespace core {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-/// Impacts that are a shorter way than this part of the extent apart hang together.
+/// Impacts hang together if the way between them is shorter than this part of the extent.
 constexpr double small_way = 1e-3;
-/// Hops below this part of the extent are taken for rest where they die down.
+/// Hops that die down are taken for rest below this part of the extent.
 constexpr double small_rest = 1e-10;
 /// More contacts than these are not followed.
 constexpr std::size_t most_contacts = 24;
 
-/// Impacts that are followed to see whether they end. A light body between heavy ones that close
-/// without a gap goes on for millions; looks that may come at every impact are short.
+/// How many impacts are followed to see whether they end. A light body between two heavy ones that
+/// close in on it has millions of them. Searches that may be made at every impact are short.
 constexpr std::int64_t most_of_a_long_look = 200'000;
 constexpr std::int64_t most_of_a_look = 2'000;
 
-/// 3, 4, 6, 8, 12, 16, ...: so that looks cost a constant share of the impacts.
+/// A search is made at the 3rd, 4th, 6th, 8th, 12th, 16th ... impact, so that searches cost a
+/// constant share of the work.
 bool worth_a_look(std::int64_t n) {
   const auto power_of_two = [](std::int64_t k) { return k > 0 && (k & (k - 1)) == 0; };
   return n >= 3 && (power_of_two(n) || (n % 3 == 0 && power_of_two(n / 3)));
 }
 
-/// Acceleration of the material point `arm` from the origin of a motion, m/s^2; what changes the
+/// Acceleration of the material point `arm` from the origin of a motion, m/s^2; the change of the
 /// angular velocity is left out.
 Vector3 acceleration_at(const Motion& motion, double s, const Vector3& w, const Vector3& arm) {
   return motion.acceleration(s) + w.cross(w.cross(arm));
@@ -71,7 +72,7 @@ struct Joined {
   Side a;
   Side b;
 
-  /// What a unit impulse of `other` along its normal does to the rate of this contact, 1/kg.
+  /// How much a unit impulse at `other`, along its normal, changes the rate of this contact, 1/kg.
   [[nodiscard]] double coupling(const Joined& other) const {
     double sum = 0.0;
     for (const Side* mine : {&a, &b}) {
@@ -138,7 +139,7 @@ EventAccumulation::Finding EventAccumulation::after_impact(BodyIndex a, BodyInde
         return {.kind = Finding::Kind::squeezed, .reason = std::move(reason), .bodies = {a, b}};
       }
     }
-    // The last impacts of a collapse are no way apart: each may be the one that ends it.
+    // The last impacts of a collapse follow each other on no way at all: each may end it.
     const bool long_look = worth_a_look(history.chain());
     if (long_look || history.on_no_way()) {
       Finding finding = collapse(a, b, t, long_look ? most_of_a_long_look : most_of_a_look);
@@ -167,8 +168,8 @@ bool EventAccumulation::stalls(BodyIndex a, BodyIndex b, Instant t, double resol
   return histories_[run_.model.is_free(a) ? a : b].stalls(t, resolution);
 }
 
-/// Whether nothing that presses the two together lets them hop above tolerance: u^2 <= 2 a h, a the
-/// greatest acceleration that they have at any point.
+/// Whether the two are pressed together so strongly that their hop stays below the tolerance h: u^2
+/// <= 2 a h, where a is the greatest acceleration at any of their points.
 bool EventAccumulation::rests(BodyIndex a, BodyIndex b, double approach, double tolerance,
                               Instant t) const {
   double pressing = 0.0;
@@ -189,7 +190,7 @@ bool EventAccumulation::rests(BodyIndex a, BodyIndex b, double approach, double 
   return approach * approach <= 2.0 * pressing * tolerance;
 }
 
-/// Pairs that met lately, from body to body, starting with this one.
+/// The pairs that met lately, from body to body, starting with this pair.
 std::vector<BodyPair> EventAccumulation::cluster_pairs(BodyIndex a, BodyIndex b) const {
   std::vector<BodyPair> pairs{{a, b}};
   std::vector<BodyIndex> bodies{a, b};
@@ -211,7 +212,7 @@ std::vector<BodyPair> EventAccumulation::cluster_pairs(BodyIndex a, BodyIndex b)
   return pairs;
 }
 
-/// The bodies that met lately, followed in relative coordinates: nothing rounds there.
+/// Follows the bodies that met lately in relative coordinates, where positions do not round.
 EventAccumulation::Finding EventAccumulation::collapse(BodyIndex a, BodyIndex b, Instant t,
                                                        std::int64_t most_impacts) const {
   std::vector<Joined> joined;
@@ -238,7 +239,7 @@ EventAccumulation::Finding EventAccumulation::collapse(BodyIndex a, BodyIndex b,
     cluster.contacts.push_back({std::max(o.gap, 0.0), o.normal.dot(v),
                                 o.normal.dot(of_q.acceleration - of_p.acceleration), e});
     dissipates = dissipates || e < 1.0;
-    // Until one has gone past the other by a small part of the extent, normals stay what they are.
+    // Normals are constant until one body has moved past the other by a small part of its extent.
     const double way = small_way * std::min(smallest_extent(shape_p), smallest_extent(shape_q));
     horizon = std::min(horizon, way / v.norm());
   }
@@ -271,8 +272,8 @@ EventAccumulation::Finding EventAccumulation::collapse(BodyIndex a, BodyIndex b,
   return finding;
 }
 
-/// Between two bodies that nothing stops from meeting: impacts follow each other ever faster until
-/// no room is left.
+/// Says whether body i is between two bodies that nothing stops from meeting: its impacts follow
+/// each other ever faster until no room is left.
 std::string EventAccumulation::squeeze(BodyIndex i, Instant t) const {
   const std::vector<BodyIndex> partners = histories_[i].partners();
   if (partners.size() != 2 || run_.model.is_free(partners[0]) || run_.model.is_free(partners[1])) {
@@ -292,7 +293,8 @@ std::string EventAccumulation::squeeze(BodyIndex i, Instant t) const {
     gap += std::max(o.gap, 0.0);
     left = std::min(left, motions_.end_of(j) - t);
   }
-  // The second one's velocity against the first's, along its normal, which points to body i.
+  // Velocity of the second body relative to the first, along the second's normal, which points to
+  // body i.
   const double closing = normal.dot(velocity);
   if (!opposite || !(closing > 0.0) || !(gap < closing * left)) {
     return {};

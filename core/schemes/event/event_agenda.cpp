@@ -24,23 +24,23 @@ Agenda::Agenda(const Model& model)
   }
 }
 
-void Agenda::push(Instant t, Due due, BodyIndex a, BodyIndex b, double patience, bool decided,
+void Agenda::push(Instant t, DueKind kind, BodyIndex a, BodyIndex b, double bracket, bool decided,
                   const Image& image) {
   if (heap_.size() >= crowded_) {
     sweep_out();
   }
-  heap_.push_back({t, patience, rank_[a], rank_[b], version_[a], version_[b], image, due, decided});
+  heap_.push_back({t, bracket, rank_[a], rank_[b], version_[a], version_[b], image, kind, decided});
   std::push_heap(heap_.begin(), heap_.end(), later);
 }
 
-void Agenda::meet(BodyIndex i, BodyIndex b, Instant t, double patience) {
+void Agenda::meet(BodyIndex i, BodyIndex b, Instant t, double bracket) {
   Record& record = records_[i];
   const bool known = record.version == version_[i] && record.meeting <= t;
   if (known && (record.meeting < t || ranks(i, record.partner) < ranks(i, rank_[b]))) {
     return;
   }
   record.meeting = t;
-  record.patience = patience;
+  record.bracket = bracket;
   record.partner = rank_[b];
   record.version = version_[i];
   record.partner_version = version_[b];
@@ -66,9 +66,9 @@ EventCalendar::Entry Agenda::due(std::uint32_t body) const {
   const Record& record = records_[body];
   const bool crosses = record.crossing <= record.meeting;
   const auto [a, b] = crosses ? std::pair{rank_[body], rank_[body]} : ranks(body, record.partner);
-  const Due due = crosses ? Due::horizon : Due::impact;
+  const DueKind kind = crosses ? DueKind::crossing : DueKind::impact;
   return {.time = std::min(record.crossing, record.meeting),
-          .key = static_cast<std::uint64_t>(due) << 32U | a,
+          .key = static_cast<std::uint64_t>(kind) << 32U | a,
           .key2 = b,
           .body = body};
 }
@@ -80,15 +80,15 @@ DueEvent Agenda::pop_record(const EventCalendar::Entry& first) {
   calendar_.drop(first.body);
   record.filed = false;
   if (record.crossing <= record.meeting) {
-    event.due = Due::horizon;
+    event.kind = DueKind::crossing;
     record.crossing = Instant::never();
     return event;
   }
   const auto [a, b] = ranks(i, record.partner);
-  event.due = Due::impact;
+  event.kind = DueKind::impact;
   event.a = by_name_[a];
   event.b = by_name_[b];
-  event.patience = record.patience;
+  event.bracket = record.bracket;
   event.stale = meeting(i) == Instant::never();
   record.meeting = Instant::never();
   return event;
@@ -108,31 +108,32 @@ DueEvent Agenda::pop() {
   const BodyIndex a = by_name_[entry.a];
   const BodyIndex b = by_name_[entry.b];
   return {.time = entry.time,
-          .due = entry.due,
+          .kind = entry.kind,
           .a = a,
           .b = b,
-          .patience = entry.patience,
+          .bracket = entry.bracket,
           .decided = entry.decided,
           .stale = stale(entry),
           .image = entry.image};
 }
 
-/// Where impacts follow each other much faster than what was predicted far ahead comes up, stale
-/// entries would pile up without end. What is taken even when it is stale stays.
+/// Removes stale entries. Impacts may follow each other much faster than predictions far ahead come
+/// up, and stale ones would pile up without end. Kinds that are taken even when stale are kept.
 void Agenda::sweep_out() {
   std::erase_if(heap_, [this](const Entry& entry) {
-    return stale(entry) && entry.due != Due::epoch_end && entry.due != Due::contact_begins;
+    return stale(entry) && entry.kind != DueKind::epoch_end &&
+           entry.kind != DueKind::contact_begins;
   });
   std::make_heap(heap_.begin(), heap_.end(), later);
   crowded_ = std::max(least_crowded, 2 * heap_.size());
 }
 
 void Agenda::Entry::persist(Archive& archive) {
-  archive(time, due, a, b, version_a, version_b, patience, decided, image);
+  archive(time, kind, a, b, version_a, version_b, bracket, decided, image);
 }
 
 void Agenda::Record::persist(Archive& archive) {
-  archive(meeting, crossing, patience, partner, version, partner_version);
+  archive(meeting, crossing, bracket, partner, version, partner_version);
 }
 
 void Agenda::persist(Archive& archive) {

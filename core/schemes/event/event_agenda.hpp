@@ -16,7 +16,7 @@ inline namespace core {
 class Archive;
 
 /// What is due, in the order in which simultaneous events are taken.
-enum class Due : std::uint8_t {
+enum class DueKind : std::uint8_t {
   epoch_end,       ///< what was predicted ends here, for all
   segment_end,     ///< the motion of `a` ends there; the next one is due
   support_ends,    ///< `a` leaves the surface `b`
@@ -25,23 +25,23 @@ enum class Due : std::uint8_t {
   field_entered,   ///< between `a` and `b`
   field_left,
   clear_of_hand,  ///< what a hand has let go of is clear of it
-  horizon,        ///< `a` comes near others
+  crossing,       ///< `a` comes near others
   recheck,        ///< ask the detector again
   stays,          ///< two solids touch, and would go on to do so
   impact,
 };
-constexpr Due last_of(Due) { return Due::impact; }
+constexpr DueKind last_of(DueKind) { return DueKind::impact; }
 
 /// An event that has come up.
 struct DueEvent {
   Instant time;
-  Due due = Due::impact;
+  DueKind kind = DueKind::impact;
   BodyIndex a = 0;
   BodyIndex b = 0;
-  double patience = 0.0;  ///< impact: t_hi - t_lo, s
-  bool decided = true;    ///< impact: contact by t_hi is proven
-  bool stale = false;     ///< one of the two has moved otherwise since it was predicted
-  bool own = false;       ///< the earliest meeting of `owner`: it knows of no later one
+  double bracket = 0.0;  ///< impact: t_hi - t_lo, s
+  bool decided = true;   ///< impact: contact by t_hi is proven
+  bool stale = false;    ///< one of the two has moved otherwise since it was predicted
+  bool own = false;      ///< the earliest meeting of `owner`: it knows of no later one
   BodyIndex owner = 0;
   Image image{};  ///< recheck: of b, as a sees it
 };
@@ -60,14 +60,14 @@ class Agenda : private EventCalendar::Source {
     const EventCalendar::Entry* const first = calendar_.first(*this);
     return (!heap_.empty() && heap_.front().time < t) || (first != nullptr && first->time < t);
   }
-  void push(Instant t, Due due, BodyIndex a, BodyIndex b, double patience = 0.0,
+  void push(Instant t, DueKind kind, BodyIndex a, BodyIndex b, double bracket = 0.0,
             bool decided = true, const Image& image = {});
   [[nodiscard]] DueEvent pop();
   /// Body i has a new motion: all that was predicted of it is stale. Recognised when it comes up.
   void renew(BodyIndex i) { ++version_[i]; }
 
   /// Body i meets b then; kept if it is the earliest that is known of i.
-  void meet(BodyIndex i, BodyIndex b, Instant t, double patience);
+  void meet(BodyIndex i, BodyIndex b, Instant t, double bracket);
   /// The earliest meeting of i that is known, if nobody has moved otherwise; never: none is.
   [[nodiscard]] Instant meeting(BodyIndex i) const;
   /// Nothing is known of i's meetings.
@@ -96,22 +96,22 @@ class Agenda : private EventCalendar::Source {
   static constexpr std::size_t least_crowded = 1024;
   struct Entry {
     Instant time;
-    double patience = 0.0;
+    double bracket = 0.0;
     std::uint32_t a = 0;  ///< ranks
     std::uint32_t b = 0;
     std::uint32_t version_a = 0;  ///< of the motions for which it was predicted
     std::uint32_t version_b = 0;
     Image image{};
-    Due due = Due::impact;
+    DueKind kind = DueKind::impact;
     bool decided = true;
 
     void persist(Archive& archive);
     /// As that of an entry of the calendar.
     [[nodiscard]] auto full_key() const {
-      const std::uint64_t first = static_cast<std::uint64_t>(due) << 32U | a;
+      const std::uint64_t first = static_cast<std::uint64_t>(kind) << 32U | a;
       return std::tuple(time.seconds, time.correction, first, std::uint64_t{b});
     }
-    [[nodiscard]] auto key() const { return std::tuple(time.seconds, time.correction, due, a, b); }
+    [[nodiscard]] auto key() const { return std::tuple(time.seconds, time.correction, kind, a, b); }
   };
   [[nodiscard]] bool stale(const Entry& entry) const {
     return entry.version_a != version_[by_name_[entry.a]] ||
@@ -122,7 +122,7 @@ class Agenda : private EventCalendar::Source {
   struct Record {
     Instant meeting = Instant::never();
     Instant crossing = Instant::never();
-    double patience = 0.0;
+    double bracket = 0.0;
     std::uint32_t partner = 0;  ///< ranks and versions as in `Entry`
     std::uint32_t version = 0;
     std::uint32_t partner_version = 0;

@@ -1,4 +1,4 @@
-// What the motions of event-driven did, told to the ledger.
+// How the ledger follows the motions of an event-driven run.
 
 #include "core/joint_system.hpp"
 #include "core/schemes/event/event_motions.hpp"
@@ -57,15 +57,16 @@ void EventMotions::book(Flow& flow, Instant t) {
     booked_until(flow) = t;
     return;
   }
-  book_rubs(first, t);
-  // At its end a segment is where the stepper left it, which its motion tells up to roundoff.
+  book_surface_forces(first, t);
+  // The state at the end of a segment is the stepper's; the motion agrees with it up to roundoff
+  // only.
   const bool whole = !(end_of(first) - t > 0.0) && !support(first);
   for (std::size_t k = 0; k < flow.states.size(); ++k) {
     const BodyIndex i = flow.island.bodies[k];
     now_[i] = whole ? flow.states[k] : at(i, t);
     mark_brought(i, t);
   }
-  // Most islands are one body, of which nothing has to be gathered.
+  // Most islands are one body, and nothing has to be gathered for them.
   std::span<const BodyState> to(&now_[first], 1);
   std::span<const Vector3> given(&ties(first).field_force, 1);
   if (flow.states.size() > 1) {
@@ -85,7 +86,7 @@ void EventMotions::book(Flow& flow, Instant t) {
   }
   const bool turns = ties(first).turns;
   const double roundoff = run_.options.roundoff && !turns ? new_roundoff(flow, t) : 0.0;
-  // What the motion of a top is off its closed form is truncation: polynomials are fitted to it.
+  // The motion of a top is fitted by polynomials: its distance from the closed form is truncation.
   const bool exact =
       !turns && (flow.held || (flow.exact && !run_.model.tumbles(run_.model.island_of(first))));
   Leg leg{flow.island, booked, to, given, exact, roundoff, riding_work(flow, t)};
@@ -112,7 +113,8 @@ void EventMotions::book(Flow& flow, Instant t) {
   booked_until(flow) = t;
 }
 
-/// What contact forces did to a body that turns, J; books what of their work is truncation.
+/// Work of contact forces on a body that turns in touch, J; books the part of it that is
+/// truncation.
 double EventMotions::book_turn(BodyIndex i, Instant from, Instant to) {
   const Polynomial<3>& worked = ties(i).worked.front();
   const Instant start = start_of(i);
@@ -121,54 +123,54 @@ double EventMotions::book_turn(BodyIndex i, Instant from, Instant to) {
   return done.x();
 }
 
-/// Friction takes what slides, belts and driven surfaces give what they carry. Forces are constant,
-/// and so are angular accelerations.
-void EventMotions::book_rubs(BodyIndex i, Instant t) {
+/// Books the work of friction, belts and driven surfaces on body i. Forces and angular
+/// accelerations are constant.
+void EventMotions::book_surface_forces(BodyIndex i, Instant t) {
   if (ties_[i] == nullptr) {
     return;
   }
-  for (Rub& rub : ties_[i]->rubs) {
-    const double h = t - rub.booked;
-    const BodyState to_a = at(rub.a, t);
-    const BodyState to_b = at(rub.b, t);
+  for (SurfaceForce& surface : ties_[i]->surface_forces) {
+    const double h = t - surface.booked;
+    const BodyState to_a = at(surface.a, t);
+    const BodyState to_b = at(surface.b, t);
     const auto way = [h](const BodyState& from, const BodyState& to, const Vector3& arm) {
       const Vector3 turned = 0.5 * h * (from.twist.angular + to.twist.angular);
       return Vector3((to.pose.position - from.pose.position) + turned.cross(arm));
     };
-    const Vector3 way_a = way(rub.from_a, to_a, rub.arm_a);
-    const Vector3 way_b = way(rub.from_b, to_b, rub.arm_b);
-    const Vector3 belts = h * (rub.belt_b - rub.belt_a);
-    if (rub.curved) {
-      run_.ledger.add(EnergyLine::friction,
-                      rub.spent(t - rub.begun).x() - rub.spent(rub.booked - rub.begun).x());
-    } else if (rub.slides) {
-      run_.ledger.add(EnergyLine::friction, rub.along.dot((way_b - way_a) + belts));
+    const Vector3 way_a = way(surface.from_a, to_a, surface.arm_a);
+    const Vector3 way_b = way(surface.from_b, to_b, surface.arm_b);
+    const Vector3 belts = h * (surface.belt_b - surface.belt_a);
+    if (surface.curved) {
+      run_.ledger.add(EnergyLine::friction, surface.spent(t - surface.begun).x() -
+                                                surface.spent(surface.booked - surface.begun).x());
+    } else if (surface.slides) {
+      run_.ledger.add(EnergyLine::friction, surface.along.dot((way_b - way_a) + belts));
     }
     if (!belts.isZero(0.0)) {
-      run_.ledger.add(EnergyLine::conveyor_and_hand, -rub.along.dot(belts));
+      run_.ledger.add(EnergyLine::conveyor_and_hand, -surface.along.dot(belts));
     }
-    if (rub.rides) {
-      // m (v1^2 - v0^2) / 2 - F.x, F what acts beside the plane.
-      const BodyState& from = run_.model.is_free(rub.b) ? rub.from_b : rub.from_a;
-      const BodyState& to = run_.model.is_free(rub.b) ? to_b : to_a;
+    if (surface.rides) {
+      // m (v1^2 - v0^2) / 2 - F.x, where F is every force but the contact's.
+      const BodyState& from = run_.model.is_free(surface.b) ? surface.from_b : surface.from_a;
+      const BodyState& to = run_.model.is_free(surface.b) ? to_b : to_a;
       run_.ledger.add(
           EnergyLine::driven_work,
           run_.account.gained(i, from, to) - (run_.model.gravity_force(i) + ties(i).field_force)
                                                  .dot(to.pose.position - from.pose.position));
-    } else if (run_.model.mobility(rub.a) == Mobility::driven) {
-      run_.ledger.add(EnergyLine::driven_work, rub.force.dot(way_a));
+    } else if (run_.model.mobility(surface.a) == Mobility::driven) {
+      run_.ledger.add(EnergyLine::driven_work, surface.force.dot(way_a));
     }
-    if (!rub.rides && run_.model.mobility(rub.b) == Mobility::driven) {
-      run_.ledger.add(EnergyLine::driven_work, -rub.force.dot(way_b));
+    if (!surface.rides && run_.model.mobility(surface.b) == Mobility::driven) {
+      run_.ledger.add(EnergyLine::driven_work, -surface.force.dot(way_b));
     }
-    rub.from_a = to_a;
-    rub.from_b = to_b;
-    rub.booked = t;
+    surface.from_a = to_a;
+    surface.from_b = to_b;
+    surface.booked = t;
   }
 }
 
-/// Of a driven surface since the ledger last looked, J: the normal force m a_s.n - F.n, integrated
-/// over the surface's displacement along n; F what is constant and what depends on the state.
+/// Work of a driven surface since the island was last booked, J: the normal force m a_s.n - F.n,
+/// integrated over the surface's displacement along n. F is every other force, constant or not.
 double EventMotions::riding_work(const Flow& flow, Instant t) {
   const BodyIndex i = flow.island.bodies.front();
   const std::optional<Support>& support = ties(i).support;
@@ -184,7 +186,7 @@ double EventMotions::riding_work(const Flow& flow, Instant t) {
                                    booked_until(flow), t - booked_until(flow));
 }
 
-/// Roundoff of the current segment since the ledger last looked, J.
+/// Roundoff of the current segment since the island was last booked, J.
 double EventMotions::new_roundoff(Flow& flow, Instant t) {
   const auto lost =
       flow.roundoff(t - start_of(flow.island.bodies.front()), flow.launched,

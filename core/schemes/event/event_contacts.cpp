@@ -13,10 +13,10 @@ namespace kairos {
 inline namespace core {
 namespace {
 
-/// Looks that go on by less than this part of the motions get nowhere.
+/// Looks that follow each other by less than this part of the motions make no progress.
 constexpr double least_progress = 1e-12;
-/// `contact_begins` of a contact that has been told.
-constexpr Instant told{-1.0, 0.0};
+/// `contact_begins` of a contact whose beginning has been recorded.
+constexpr Instant recorded{-1.0, 0.0};
 
 }  // namespace
 
@@ -31,19 +31,20 @@ EventContacts::EventContacts(EventRun& run, EventMotions& motions, EventPredicto
 // --- Groups ------------------------------------------------------------------------------------
 
 bool EventContacts::settle(std::span<const BodyIndex> seeds, Instant t,
-                           const EventModes::Wish& wish) {
+                           const EventModes::SettleOptions& options) {
   const auto adopt = [this](BodyIndex ball) {
     const auto found = touching_.find(ball);
     return found == touching_.end() ? Instant::never()
                                     : std::exchange(found->second.contact_begins, Instant::never());
   };
-  return modes_.settle(seeds, t, adopt, wish);
+  return modes_.settle(seeds, t, adopt, options);
 }
 
-/// Why what stays in touch is not kept, for a person.
+/// Tells a person why bodies in touch cannot be kept there.
 std::string EventContacts::unkept() const {
-  std::string text = modes_.why_not().empty() ? std::string(part_them)
-                                              : fmt::format("{}; {}", modes_.why_not(), part_them);
+  std::string text = modes_.why_not().empty()
+                         ? std::string(lasting_contact_advice)
+                         : fmt::format("{}; {}", modes_.why_not(), lasting_contact_advice);
   if (run_.model.has_friction()) {
     text +=
         "; schemes that treat friction between bodies that turn: moreau-jean, pgs, xpbd, penalty";
@@ -51,7 +52,7 @@ std::string EventContacts::unkept() const {
   return text;
 }
 
-/// Nothing is held any longer: each flies on from `now`.
+/// The bodies are held no longer: each flies on from `now`.
 void EventContacts::set_free(std::span<const BodyIndex> bodies, Instant t) {
   const auto changes = modes_.part(bodies);
   for (const BodyIndex i : bodies) {
@@ -67,7 +68,7 @@ void EventContacts::set_free(std::span<const BodyIndex> bodies, Instant t) {
   }
   modes_.tell(changes, t);
   for (const BodyIndex i : bodies) {
-    predictor_.predict(i, t);
+    predictor_.predict_island(i, t);
   }
 }
 
@@ -117,7 +118,8 @@ void EventContacts::stay(BodyIndex a, BodyIndex b, Instant t) {
   run_.stop(t, fmt::format("accumulation: {} stay in contact; {}", run_.names(a, b), unkept()));
 }
 
-/// Two in touch may come together elsewhere than where they are nearest: an impact there.
+/// Handles an impact where two bodies in touch come together elsewhere than at their nearest
+/// points; false where they do not.
 bool EventContacts::meet_elsewhere(BodyIndex a, BodyIndex b, Instant t) {
   const std::array<BodyPair, 1> both{BodyPair{a, b}};
   const auto worst = modes_.worst_approach({}, both, true);
@@ -141,8 +143,8 @@ bool EventContacts::could_be_supported(BodyIndex a, BodyIndex b, Instant t) cons
   return false;
 }
 
-/// In touch without approaching: no impact, and nothing that would be told. The two go on as they
-/// do, unless they come to rest.
+/// The two are in touch and do not approach: there is no impact, and no event to record. They go on
+/// as before, unless they come to rest.
 void EventContacts::touch(BodyIndex a, BodyIndex b, const Contact& contact, Instant t) {
   if (lands(a, b, contact, t)) {
     return;
@@ -167,27 +169,27 @@ void EventContacts::touch(BodyIndex a, BodyIndex b, const Contact& contact, Inst
   relaunch(a, b, t);
 }
 
-/// Where the two touch at t: the centroid of the contact patch; where that does not approach, the
-/// nearest points (one corner of several that are within tolerance).
-Contact EventContacts::contact_at(BodyIndex a, BodyIndex b, Instant t, double patience) const {
+/// Where the two touch at t: at the centroid of the contact patch, or, if that does not approach,
+/// at the nearest points (one corner of several within tolerance).
+Contact EventContacts::contact_at(BodyIndex a, BodyIndex b, Instant t, double bracket) const {
   const BodyState& state_a = motions_.now(a);
   const BodyState& state_b = motions_.now(b);
   const Overlap o =
       run_.detector.overlap(run_.model.shape(a), state_a.pose, run_.model.shape(b), state_b.pose);
   const Contact patch{o.point, o.normal, o.gap};
-  if (normal_velocity(patch, state_a, state_b) < 0.0 || patience <= 0.0) {
+  if (normal_velocity(patch, state_a, state_b) < 0.0 || bracket <= 0.0) {
     return patch;
   }
   const TimeOfImpact toi = run_.detector.time_of_impact(motions_.moving(a), motions_.moving(b),
-                                                        {t, patience}, run_.options.toi_tolerance);
+                                                        {t, bracket}, run_.options.toi_tolerance);
   const Contact nearest{0.5 * (toi.witness_a + toi.witness_b), toi.normal, toi.gap};
   const bool found = toi.status == ToiStatus::impact || toi.status == ToiStatus::undecided;
   return found && normal_velocity(nearest, state_a, state_b) < 0.0 ? nearest : patch;
 }
 
-/// A pair within tolerance that does not approach is asked about again where the answer ends.
-/// Answers that hardly get on, one after the other, would be asked for without end.
-void EventContacts::look_again(BodyIndex a, BodyIndex b, Instant t, double patience) {
+/// Asks again about a pair within tolerance that does not approach, at the end of its bracket.
+/// Brackets that hardly advance would be asked for without end: then the run stops.
+void EventContacts::look_again(BodyIndex a, BodyIndex b, Instant t, double bracket) {
   const double window = std::min({motions_.of(a).duration, motions_.of(b).duration, run_.epoch()});
   if (accumulation_.stalls(a, b, t, least_progress * window)) {
     const std::array<BodyIndex, 2> pair{a, b};
@@ -198,10 +200,11 @@ void EventContacts::look_again(BodyIndex a, BodyIndex b, Instant t, double patie
                                     "and time does not go on; {}",
                                     run_.names(a, b), unkept()));
   }
-  run_.agenda.push(t + patience, Due::recheck, a, b);
+  run_.agenda.push(t + bracket, DueKind::recheck, a, b);
 }
 
-/// Whether a ball comes to rest on a face: its hop is too small to tell.
+/// Whether a ball comes to rest on a face, as its hop is too small to resolve; it is then
+/// supported.
 bool EventContacts::lands(BodyIndex a, BodyIndex b, const Contact& contact, Instant t) {
   const double e = run_.model.restitution(a, b);
   const double tolerance = accumulation_.rest_tolerance(a, b, e);
@@ -211,7 +214,7 @@ bool EventContacts::lands(BodyIndex a, BodyIndex b, const Contact& contact, Inst
       continue;
     }
     if (run_.model.friction(ball, surface) > 0.0 || modes_.holds(ball)) {
-      continue;  // a mode of its own
+      continue;  // settled as a group in touch
     }
     const auto moving = motions_.moving(surface);
     const Motion& under = moving.motion();
@@ -235,7 +238,7 @@ bool EventContacts::lands(BodyIndex a, BodyIndex b, const Contact& contact, Inst
         return true;
       }
       if (!accumulation_.stalls(a, b, t, least_progress * run_.epoch())) {
-        continue;  // one surface after the other slows it down
+        continue;  // each surface in turn slows it down
       }
       const BodyIndex other = motions_.support(ball)->surface;
       depart(a, b, t);
@@ -267,10 +270,10 @@ bool EventContacts::in_one_island(BodyIndex a, BodyIndex b) const {
          run_.model.island_of(a) == run_.model.island_of(b);
 }
 
-/// The islands of the two fly on from `now`, where an impact has put them.
+/// Launches the islands of the two from `now`, where an impact has put them.
 void EventContacts::depart(BodyIndex a, BodyIndex b, Instant t) {
   for (const BodyIndex i : {a, b}) {
-    // What hangs together by joints was struck together.
+    // Bodies that joints hold together were struck together.
     if (joints_of(i) != nullptr) {
       part_jointed(i, t);
     } else if (run_.model.is_free(i)) {
@@ -307,7 +310,7 @@ void EventContacts::relaunch(BodyIndex a, BodyIndex b, Instant t) {
 
 // --- Supports ----------------------------------------------------------------------------------
 
-/// At which the ball leaves the surface, m/s.
+/// Speed at which the ball leaves the surface, m/s.
 double EventContacts::leaving_speed(BodyIndex ball, const Support& support, Instant t) const {
   const auto moving = motions_.moving(support.surface);
   const Motion& under = moving.motion();
@@ -315,9 +318,9 @@ double EventContacts::leaving_speed(BodyIndex ball, const Support& support, Inst
   return support.normal.dot(motions_.now(ball).twist.linear - under.twist(s).linear);
 }
 
-/// The ball takes the velocity of the surface along its normal, and is as high over it as when it
-/// was met: a driven motion comes in pieces, each cut short at its order, and what they leave out
-/// would add up.
+/// Gives the ball the velocity of the surface along its normal and the height over it that it had
+/// when they met. A driven motion comes in pieces, each truncated at its order: their errors would
+/// add up.
 void EventContacts::follow(BodyIndex ball, const Support& support, Instant t) {
   const double away = leaving_speed(ball, support, t);
   const auto moving = motions_.moving(support.surface);
@@ -338,8 +341,8 @@ void EventContacts::follow(BodyIndex ball, const Support& support, Instant t) {
   v -= support.normal * (support.normal.dot(v) - ground);
 }
 
-/// The ball stays on the surface from now on. The hops it would still make, each e times as long as
-/// the one before, add up to 2 u / (a (1 - e)): that is when contact begins.
+/// The ball stays on the surface from now on. The hops that are left, each e times as long as the
+/// one before, would take 2 u / (a (1 - e)): contact begins after that time.
 void EventContacts::settle(BodyIndex ball, const Support& support, double pressing, double e,
                            Instant t) {
   if (motions_.support(ball)) {
@@ -353,24 +356,24 @@ void EventContacts::settle(BodyIndex ball, const Support& support, double pressi
   auto& [settled, contact_begins] = touching_[ball];
   if (settled != Instant::never() &&
       accumulation_.stalls(ball, support.surface, t, least_progress * run_.epoch())) {
-    // At the rim of a face: it goes on over the edge.
+    // The ball is at the rim of the face, and goes on over the edge.
     const std::array<BodyIndex, 2> pair{ball, support.surface};
     if (settle(pair, t, {.unloaded = true, .may_turn = true})) {
       return;
     }
     return run_.stop(t, fmt::format("accumulation: {} leave and meet each other again and again, "
                                     "and time does not go on; {}",
-                                    run_.names(ball, support.surface), part_them));
+                                    run_.names(ball, support.surface), lasting_contact_advice));
   }
   settled = t;
   contact_begins = t + still;
   if (contact_begins < Instant::never()) {
-    run_.agenda.push(contact_begins, Due::contact_begins, ball, support.surface);
+    run_.agenda.push(contact_begins, DueKind::contact_begins, ball, support.surface);
   }
-  predictor_.predict(ball, t);
+  predictor_.predict_island(ball, t);
 }
 
-/// A supported ball was pushed: it stays if the push is along the surface.
+/// Keeps a supported ball that was pushed on its surface, if the push is along the surface.
 void EventContacts::resume_support(BodyIndex i, Instant t) {
   const Support support = *motions_.support(i);
   const double away = leaving_speed(i, support, t);
@@ -387,7 +390,7 @@ void EventContacts::begin_contact(BodyIndex i, BodyIndex j, Instant t) {
   const auto touching = touching_.find(i);
   if (motions_.support(i) && touching != touching_.end() && touching->second.contact_begins == t) {
     run_.time = t;
-    touching->second.contact_begins = told;
+    touching->second.contact_begins = recorded;
     motions_.note(EventKind::contact_begins, i, motions_.support(i)->surface, t);
   }
 }
@@ -396,7 +399,7 @@ void EventContacts::end_contact(BodyIndex i, Instant t) {
   Instant& began = touching_[i].contact_begins;
   const BodyIndex surface = motions_.support(i)->surface;
   motions_.set_support(i, std::nullopt);
-  if (began < t) {  // otherwise it was still hopping
+  if (began < t) {  // otherwise its hops had not died down
     motions_.note(EventKind::contact_ends, i, surface, t);
   }
   began = Instant::never();

@@ -20,8 +20,8 @@ class EventContacts {
   EventContacts(EventRun& run, EventMotions& motions, EventPredictor& predictor,
                 ContactGraph& graph, const Method& method);
 
-  /// The detector told contact within `patience` (s) of t; `decided`: it proved it.
-  void impact(BodyIndex a, BodyIndex b, Instant t, double patience, bool decided);
+  /// The detector told contact within `bracket` (s) of t; `decided`: it proved it.
+  void impact(BodyIndex a, BodyIndex b, Instant t, double bracket, bool decided);
   void cross_field(BodyIndex a, BodyIndex b, Instant t, bool entering);
 
   /// Two solids touch and will stay in touch.
@@ -61,7 +61,7 @@ class EventContacts {
   [[nodiscard]] bool strikes_flat(Event& event);
   [[nodiscard]] bool still_approaching(const Event& event, double approach, Instant t);
   [[nodiscard]] bool settle(std::span<const BodyIndex> seeds, Instant t,
-                            const EventModes::Wish& wish = {});
+                            const EventModes::SettleOptions& options = {});
   [[nodiscard]] bool could_be_supported(BodyIndex a, BodyIndex b, Instant t) const;
   [[nodiscard]] std::string unkept() const;
   [[nodiscard]] bool strike_group(const BodyPair& pair, double approach, Instant t);
@@ -76,8 +76,8 @@ class EventContacts {
   void go_on_from(std::span<const BodyIndex> bodies, const BodyPair& first, double approach,
                   Instant t);
   void set_free(std::span<const BodyIndex> bodies, Instant t);
-  [[nodiscard]] Contact contact_at(BodyIndex a, BodyIndex b, Instant t, double patience) const;
-  void look_again(BodyIndex a, BodyIndex b, Instant t, double patience);
+  [[nodiscard]] Contact contact_at(BodyIndex a, BodyIndex b, Instant t, double bracket) const;
+  void look_again(BodyIndex a, BodyIndex b, Instant t, double bracket);
   void touch(BodyIndex a, BodyIndex b, const Contact& contact, Instant t);
   [[nodiscard]] bool lands(BodyIndex a, BodyIndex b, const Contact& contact, Instant t);
   [[nodiscard]] bool leaves_for(BodyIndex ball, const Support& other, double tolerance, Instant t);

@@ -8,7 +8,7 @@ namespace kairos {
 inline namespace core {
 namespace {
 
-/// Why it cannot run a scene with joints like this.
+/// Why this scheme cannot run a scene with such joints; empty if it can.
 std::string refuses_joints(const Model& model, const Method& method) {
   if (!method.law->info().passed_on_by_joints) {
     return fmt::format(

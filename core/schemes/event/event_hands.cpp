@@ -40,7 +40,7 @@ void EventHands::grasp(std::size_t grip, Instant t) {
   carry(grip, 1.0, t);
 }
 
-/// The held body takes the hand's place and the given share of its velocity.
+/// Puts the held body where the hand is, with the given share of the hand's velocity.
 void EventHands::carry(std::size_t grip, double share, Instant t) {
   const auto [hand, held] = run_.model.grips()[grip];
   motions_.book(held, t);
@@ -68,7 +68,7 @@ void EventHands::clear(BodyIndex a, BodyIndex b, Instant t) {
   }
 }
 
-/// What was let go of meets others from now on, unless it is inside one of them.
+/// The released body meets others from now on; the run stops if it is inside one of them.
 void EventHands::meet_again(std::size_t grip, Instant t) {
   const auto pose = [&](BodyIndex i) { return motions_.at(i, t).pose; };
   const Grip& of = run_.model.grips()[grip];

@@ -1,4 +1,4 @@
-// What `EventContacts` does when bodies strike each other: two, or a group that hangs together.
+// `EventContacts` when bodies strike each other: two of them, or a group in touch.
 #include "core/contacts/centre_of_pressure.hpp"
 #include "core/contacts/group_law.hpp"
 #include "core/impact_check.hpp"
@@ -19,11 +19,11 @@ inline namespace core {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-/// An impact among bodies in touch is handed on so often at most, for each of them.
+/// How often an impact among bodies in touch is handed on at most, for each of them.
 constexpr std::size_t most_rounds = 1000;
 
-/// Of the points of a patch and all between: on one of the lines between two of them, where x is
-/// beyond.
+/// The point of a patch that is nearest to x, which is outside of it: on a line between two of its
+/// points.
 Vector3 nearest_point(const ContactManifold& manifold, const Vector3& x) {
   Vector3 nearest = manifold.points[0].position;
   for (std::size_t i = 0; i < manifold.size; ++i) {
@@ -40,7 +40,8 @@ Vector3 nearest_point(const ContactManifold& manifold, const Vector3& x) {
 
 }  // namespace
 
-/// Where the one meets an image of the other, that goes on as this image; whether it did.
+/// If one body meets a periodic image of the other, the other continues as this image; returns
+/// whether it did.
 bool EventContacts::meet_in_one_box(BodyIndex a, BodyIndex b, Instant t) {
   const auto& box = run_.model.scene().periodic;
   if (!box || std::holds_alternative<HalfSpace>(run_.model.shape(a)) ||
@@ -57,7 +58,7 @@ bool EventContacts::meet_in_one_box(BodyIndex a, BodyIndex b, Instant t) {
   if (!predictor_.goes_alone(mover)) {
     run_.stop(t, fmt::format("contact: {} meet across the side of the periodic box, and both are "
                              "held by what they touch, which is not kept; {}",
-                             run_.names(a, b), part_them));
+                             run_.names(a, b), lasting_contact_advice));
     return false;
   }
   motions_.go_on_as(mover, n);
@@ -66,7 +67,7 @@ bool EventContacts::meet_in_one_box(BodyIndex a, BodyIndex b, Instant t) {
   return true;
 }
 
-void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double patience, bool decided) {
+void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double bracket, bool decided) {
   motions_.open_pair(a, b, t);
   const bool moved = meet_in_one_box(a, b, t);
   if (run_.stopped()) {
@@ -74,15 +75,15 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double patience,
   }
   Event event{.time = t, .kind = EventKind::impact, .a = a, .b = b};
   const auto landing = modes_.landing(a, b);
-  event.contact = landing ? landing->contact : contact_at(a, b, t, patience);
+  event.contact = landing ? landing->contact : contact_at(a, b, t, bracket);
   const double approach = normal_velocity(event.contact, motions_.now(a), motions_.now(b));
   const std::array<BodyIndex, 2> pair{a, b};
-  if (!decided && approach >= 0.0 && patience > 0.0) {
+  if (!decided && approach >= 0.0 && bracket > 0.0) {
     if (!could_be_supported(a, b, t) && settle(pair, t, {.pressed = BodyPair{a, b}})) {
       return;
     }
-    // What is counted on as another image is launched before it is asked about again.
-    return moved ? relaunch(a, b, t) : look_again(a, b, t, patience);
+    // A body that continues as another image must be launched before it is asked about again.
+    return moved ? relaunch(a, b, t) : look_again(a, b, t, bracket);
   }
   if (approach >= 0.0 && run_.law.info().needs_contact) {
     return touch(a, b, event.contact, t);
@@ -96,7 +97,7 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double patience,
   meet(event, t);
 }
 
-/// Two that approach each other strike, and what they touch with them.
+/// Two bodies that approach each other strike, and with them those that they touch.
 void EventContacts::meet(Event& event, Instant t) {
   const auto [a, b] = std::pair{event.a, event.b};
   const std::array<BodyIndex, 2> pair{a, b};
@@ -122,7 +123,7 @@ void EventContacts::meet(Event& event, Instant t) {
   using Kind = EventAccumulation::Finding::Kind;
   const auto finding = accumulation_.after_impact(a, b, std::max(-approach, 0.0), t);
   if (finding.kind == Kind::none) {
-    // What does not bounce goes on in touch at once.
+    // Bodies that do not bounce go on in touch at once.
     const bool stays = modes_.stays(a, b, event.contact);
     return stays && settle(pair, t, {.pressed = BodyPair{a, b}, .turning_only = true})
                ? void()
@@ -139,20 +140,20 @@ void EventContacts::meet(Event& event, Instant t) {
       return;
     }
     if (finding.kind == Kind::collapse) {
-      return relaunch(a, b, t);  // not over yet
+      return relaunch(a, b, t);  // the impacts go on for now
     }
   }
-  depart(a, b, t);  // what the last frame shows, and the ledger has booked
+  depart(a, b, t);  // the last frame shows the states after the impact, as booked
   run_.stop(t, finding.kind == Kind::squeezed ? finding.reason
                                               : fmt::format("{}; {}", finding.reason, unkept()));
 }
 
-/// The impact law acts, and the ledger knows.
+/// Applies the impact law, and books what it did.
 void EventContacts::strike(Event& event) {
   if (joints_of(event.a) != nullptr || joints_of(event.b) != nullptr) {
     return strike_jointed(event);
   }
-  Vector3 unused_a = Vector3::Zero();  // solids that push (none does) would need fields
+  Vector3 unused_a = Vector3::Zero();  // no law gives a solid a force beside the impulse
   Vector3 unused_b = Vector3::Zero();
   const ImpactEnergy energy =
       run_.exchange(event, motions_.now(event.a), motions_.now(event.b), unused_a, unused_b,
@@ -166,9 +167,9 @@ void EventContacts::strike(Event& event) {
   run_.ledger.add(EnergyLine::conveyor_and_hand, energy.conveyor_and_hand);
 }
 
-/// Whether faces or edges that land flat, with friction, are sent back flat: their points press so
-/// that nothing turns, which they can while the centre of pressure is among them. Where it would
-/// be beyond, the point next to it takes the impact alone.
+/// Whether faces or edges that land flat, with friction, leave flat. The points of the patch can
+/// press so that nothing turns while the centre of pressure is inside the patch. If it would be
+/// outside, the point of the patch nearest to it takes the whole impact.
 bool EventContacts::strikes_flat(Event& event) {
   const auto [a, b] = std::pair{event.a, event.b};
   const BodyState& at_a = motions_.now(a);
@@ -214,7 +215,7 @@ bool EventContacts::strikes_flat(Event& event) {
   return true;
 }
 
-/// After a law that does not part them nothing can go on.
+/// Stops the run if the impact law left the two approaching each other.
 bool EventContacts::still_approaching(const Event& event, double approach, Instant t) {
   const auto [a, b] = std::pair{event.a, event.b};
   const double rebound = normal_velocity(event.contact, event.after_a, event.after_b);
@@ -223,7 +224,8 @@ bool EventContacts::still_approaching(const Event& event, double approach, Insta
     scale += after->twist.linear.norm() +
              after->twist.angular.norm() * (event.contact.point - after->pose.position).norm();
   }
-  // Roundoff of a product and a few sums; with friction, what an impact is integrated to.
+  // Roundoff of a product and a few sums; with friction, the tolerance to which an impact is
+  // integrated.
   const double allowed = run_.model.friction(a, b) > 0.0 ? 1e-12 : 16.0 * epsilon;
   if (!(rebound < -allowed * scale)) {
     return false;
@@ -235,7 +237,7 @@ bool EventContacts::still_approaching(const Event& event, double approach, Insta
   return true;
 }
 
-/// What moves by less than roundoff of the fastest does not move.
+/// Sets velocities to zero that are roundoff of the fastest.
 void EventContacts::leave_at_rest(const EventModes::GroupImpact& impact,
                                   const Eigen::VectorXd& impulses, std::vector<Twist>& v) const {
   double fastest = 0.0;
@@ -256,7 +258,8 @@ void EventContacts::leave_at_rest(const EventModes::GroupImpact& impact,
       angular = std::abs(angular) * radius <= least ? 0.0 : angular;
     }
   }
-  // A part of a slow way along a contact is none: without it, the way would lead into the contact.
+  // A velocity along a contact is kept whole: without one of its components it would lead into the
+  // contact.
   ContactSystem at_rest{impact.system.bodies, {}};
   for (const ContactRow& row : impact.system.rows) {
     if (std::abs(impact.system.rate(row, struck)) <= least) {
@@ -299,8 +302,8 @@ void EventContacts::return_as_struck(const EventModes::GroupImpact& impact,
   }
 }
 
-/// A law that knows groups strikes all of them at once; false where there is no group, or the law
-/// knows none.
+/// Strikes all bodies of a group at once, if the impact law takes groups; false if it does not, or
+/// there is no group.
 bool EventContacts::strike_group(const BodyPair& pair, double approach, Instant t) {
   const auto* law = dynamic_cast<const GroupLaw*>(&run_.law);
   if (joints_of(pair.first) != nullptr || joints_of(pair.second) != nullptr) {
@@ -314,7 +317,7 @@ bool EventContacts::strike_group(const BodyPair& pair, double approach, Instant 
   if (std::any_of(impact.pairs.begin(), impact.pairs.end(), [&](const BodyPair& p) {
         return run_.model.friction(p.first, p.second) > 0.0;
       })) {
-    return false;  // one after the other
+    return false;  // with friction, pairs are struck one after the other
   }
   if (!impact.refusal.empty() || impact.pairs.size() < (held ? 1U : 2U)) {
     return false;
@@ -345,7 +348,7 @@ bool EventContacts::strike_group(const BodyPair& pair, double approach, Instant 
       run_.account.struck(i, before.back(), now);
     }
   }
-  // p (u- + u+) / 2 of each row is what it did to the energy, but for the work of what is driven.
+  // Each row changed the energy by p (u- + u+) / 2, beside the work of driven bodies.
   for (std::size_t r = 0; r < impact.system.rows.size(); ++r) {
     const ContactRow& row = impact.system.rows[r];
     const double p = impulses[static_cast<Eigen::Index>(r)];
@@ -369,9 +372,9 @@ bool EventContacts::strike_group(const BodyPair& pair, double approach, Instant 
   return true;
 }
 
-/// An impact of each pair that took an impulse, that which began it first; its contact is where the
-/// impulses of what approached act together, which leaves at a restitution of that, or else where
-/// all do: what merely rested is held by what the others do to it.
+/// Records an impact of each pair that took an impulse, the pair that began it first. Its contact
+/// is the centre of the impulses of the points that approached, which leave as restitution says; if
+/// none approached, the centre of all impulses.
 void EventContacts::tell_group(const EventModes::GroupImpact& impact,
                                const Eigen::VectorXd& impulses, std::span<const BodyState> before,
                                const BodyPair& first, Instant t) {
@@ -439,8 +442,8 @@ void EventContacts::tell_group(const EventModes::GroupImpact& impact,
   }
 }
 
-/// An impact on bodies that are held together goes on through their patches, pair by pair, always
-/// where they approach fastest, until none does; then what is left of the group is settled.
+/// Hands an impact on through the patches of bodies in touch: pair by pair, always where they
+/// approach fastest, until none approaches. Then the rest of the group is settled.
 void EventContacts::hand_on(const Event& first, double approach, std::vector<BodyIndex> bodies,
                             Instant t) {
   const std::array<BodyPair, 1> struck{BodyPair{first.a, first.b}};
@@ -454,7 +457,7 @@ void EventContacts::hand_on(const Event& first, double approach, std::vector<Bod
       set_free(bodies, t);
       return run_.stop(t, fmt::format("accumulation: an impact of {} is handed on between bodies "
                                       "in touch more than {} times; {}",
-                                      run_.names(first.a, first.b), most, part_them));
+                                      run_.names(first.a, first.b), most, lasting_contact_advice));
     }
     Event event{.time = t, .kind = EventKind::impact, .a = worst->a, .b = worst->b};
     event.contact = worst->contact;
@@ -463,7 +466,7 @@ void EventContacts::hand_on(const Event& first, double approach, std::vector<Bod
   go_on_from(bodies, {first.a, first.b}, approach, t);
 }
 
-/// What an impact has left of a group is settled, or flies apart.
+/// Settles the bodies that an impact left in touch, or sets them free.
 void EventContacts::go_on_from(std::span<const BodyIndex> bodies, const BodyPair& first,
                                double approach, Instant t) {
   using Kind = EventAccumulation::Finding::Kind;

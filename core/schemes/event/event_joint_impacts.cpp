@@ -1,4 +1,4 @@
-// What `EventContacts` does when a body strikes that hangs on joints: they pass the impact on.
+// `EventContacts` when one of two bodies that strike hangs on joints: these pass the impact on.
 #include "core/joint_system.hpp"
 #include "core/schemes/event/event_contacts.hpp"
 
@@ -10,11 +10,11 @@ namespace kairos {
 inline namespace core {
 namespace {
 
-/// Of what joints leave free, relative: less than that is nothing.
+/// Relative accelerations that joints leave free are roundoff below this.
 constexpr double at_rest = 1e-9;
-/// Of the extent: hops below that die down to rest where they would, by their own sum. What presses
-/// changes by as small a part meanwhile, and so does the time that the sum tells; later impacts
-/// would be told worse, for a contact is told within a gap of roundoff.
+/// Hops below this part of the extent are summed up, and the body is at rest from there on. The
+/// pressing force changes by as small a part while they last, and so does the sum. Smaller hops
+/// would be resolved worse than that: a contact is located within a gap of roundoff.
 constexpr double small_hop = 1e-8;
 
 /// The bodies of an island that an impact takes along, and what a unit impulse does to them.
@@ -57,7 +57,7 @@ struct StruckIsland {
       driven = island->joints->pass_on(t, states, response);
     }
   }
-  /// Of velocities or their changes, at a point of a body.
+  /// Velocity, or change of velocity, at a point of a body.
   [[nodiscard]] Vector3 at(std::span<const Twist> v, BodyIndex i, const Vector3& point) const {
     const std::size_t k = place(i);
     return v[k].at(point, states[k].pose.position);
@@ -68,7 +68,7 @@ struct StruckIsland {
 struct JointedContact {
   StruckIsland of_a;
   StruckIsland of_b;   ///< empty where both are in one island
-  double given = 0.0;  ///< rate of parting that a unit impulse gives, 1/kg
+  double given = 0.0;  ///< parting speed by a unit impulse, 1/kg
 
   JointedContact(const Model& model, const EventMotions& motions, const Event& event)
       : of_a(model, motions, event.a) {
@@ -100,13 +100,13 @@ const JointSystem* EventContacts::joints_of(BodyIndex i) const {
   return run_.model.is_free(i) ? run_.model.islands()[run_.model.island_of(i)].joints : nullptr;
 }
 
-/// What joints hold together is in touch with nothing any more.
+/// Ends all contacts of the bodies that joints hold together with i.
 void EventContacts::part_jointed(BodyIndex i, Instant t) {
   modes_.tell(modes_.part(motions_.island(i)), t);
 }
 
-/// Newton's hypothesis with the mass that the joints leave to the contact: the two part e times as
-/// fast as they met, and the joints take up what impulses that needs.
+/// Newton's hypothesis, with the effective mass that the joints leave at the contact: the two part
+/// e times as fast as they met, and the joints take the impulses that this needs.
 void EventContacts::strike_jointed(Event& event) {
   const Model& model = run_.model;
   for (const BodyIndex i : {event.a, event.b}) {
@@ -146,8 +146,8 @@ void EventContacts::strike_jointed(Event& event) {
   run_.note(event);
 }
 
-/// Whether what hangs on joints comes to rest on something that never moves: its hops are too small
-/// to tell, and the contact and the joints leave it no other way to move. What is left of the hops,
+/// Whether a body that hangs on joints comes to rest on a fixed one: its hops are too small to
+/// resolve, and contact and joints leave it no freedom to move. The time of the hops that are left,
 /// each e times as long as the one before, is summed up.
 bool EventContacts::rest_on_joints(const Event& event, Instant t) {
   const bool a_is_free = run_.model.is_free(event.a);
@@ -180,7 +180,7 @@ bool EventContacts::rest_on_joints(const Event& event, Instant t) {
   const auto parting = [&](std::span<const Twist> rates) {
     return sign * event.contact.normal.dot(side.at(rates, body, event.contact.point));
   };
-  /// What the contact leaves of them is nothing.
+  /// Whether the contact takes up these rates entirely.
   const auto taken_up = [&](std::span<const Twist> rates) {
     const double share = parting(rates) / touching.given;
     double left = 0.0;
@@ -211,9 +211,7 @@ bool EventContacts::rest_on_joints(const Event& event, Instant t) {
   }
   motions_.rest(body, t);
   modes_.join(event.a, event.b, t, 2.0 * rebound / (pressing * (1.0 - e)));
-  for (const BodyIndex i : island.bodies) {
-    predictor_.predict(i, t);
-  }
+  predictor_.predict_island(body, t);
   return true;
 }
 

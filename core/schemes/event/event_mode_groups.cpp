@@ -1,4 +1,5 @@
-// Who is in touch with a group under `event-driven`, and what an impact finds there.
+// Which bodies are in touch with a group under `event-driven`, and which of them an impact
+// concerns.
 
 #include "core/contacts/complementarity.hpp"
 #include "core/schemes/event/event_modes.hpp"
@@ -16,7 +17,8 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Of the speed along the normal that is rest: along a curved surface, too.
+/// Speeds along the surface count as rest below this part of the speed that is rest along the
+/// normal.
 constexpr double still_part = 1e-3;
 
 /// Where bodies rest on more points than they have ways to move, rates at these contradict each
@@ -58,21 +60,21 @@ Twist EventModes::load(BodyIndex i, const BodyState& state) const {
   return load;
 }
 
-/// So slow along the normal that what presses allows no hop worth the name.
+/// Below this speed along the normal the forces that press allow no hop above the tolerance, m/s.
 double EventModes::rest_speed(BodyIndex a, BodyIndex b, const BodyState& at_a,
-                              const BodyState& at_b, const Wish& wish) const {
+                              const BodyState& at_b, const SettleOptions& options) const {
   const double tolerance = accumulation_.rest_tolerance(a, b, run_.model.restitution(a, b));
   const double pressing = load(a, at_a).linear.norm() + load(b, at_b).linear.norm();
   const double speeds = at_a.twist.linear.norm() + at_b.twist.linear.norm();
   double slow = std::sqrt(2.0 * pressing * tolerance) + 16.0 * epsilon * speeds;
-  if (wish.unite && wish.remaining > 0.0) {
-    slow = std::max(slow, tolerance / wish.remaining);
+  if (options.unite && options.remaining > 0.0) {
+    slow = std::max(slow, tolerance / options.remaining);
   }
   return slow;
 }
 
 EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instant t,
-                                        const Wish& wish) {
+                                        const SettleOptions& options) {
   Gathered found;
   found.group.instant = at_once * run_.epoch();
   const auto is_seed = [&](BodyIndex i) {
@@ -95,10 +97,10 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
       const Island& island = run_.model.islands()[run_.model.island_of(i)];
       if (island.joints != nullptr) {
         found.refusal = "'" + run_.model.body(i).name + "' hangs on a joint";
-      } else if (island.bodies.size() > 1 || (!island.forces.empty() && !wish.impact)) {
+      } else if (island.bodies.size() > 1 || (!island.forces.empty() && !options.impact)) {
         found.refusal = "'" + run_.model.body(i).name + "' feels forces that are not constant";
       }
-    } else if (run_.model.mobility(i) == Mobility::driven && !wish.impact) {
+    } else if (run_.model.mobility(i) == Mobility::driven && !options.impact) {
       found.driven = i;
     }
   };
@@ -134,7 +136,7 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
       const double reach = predictor_.touching_gap(a, b);
       const bool joined = graph_.joins(a, b);
       if (joined && !found.has(j)) {
-        add(j);  // whatever becomes of the pair, it must be told
+        add(j);  // the end of the pair is recorded, whatever becomes of it
       }
       if ((at_a.pose.position - at_b.pose.position).norm() > radii + reach) {
         continue;
@@ -144,7 +146,7 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
       if (manifold.size == 0) {
         continue;
       }
-      const double slow = rest_speed(a, b, at_a, at_b, wish);
+      const double slow = rest_speed(a, b, at_a, at_b, options);
       double least = infinity;
       double most = -infinity;
       for (std::size_t p = 0; p < manifold.size; ++p) {
@@ -153,12 +155,12 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
         least = std::min(least, rate);
         most = std::max(most, rate);
       }
-      const bool struck = wish.impact && is_seed(a) && is_seed(b);
+      const bool struck = options.impact && is_seed(a) && is_seed(b);
       const bool elsewhere =
-          wish.turning ? least > slow || most < -slow : least < -slow || most > slow;
+          options.turning ? least > slow || most < -slow : least < -slow || most > slow;
       const bool passes =
-          wish.impact ? least > slow || (wish.held_only && !joined && !struck) : elsewhere;
-      if (passes && !wish.near) {
+          options.impact ? least > slow || (options.held_only && !joined && !struck) : elsewhere;
+      if (passes && !options.near) {
         continue;  // an impact of its own, or parting
       }
       if (!found.has(j)) {
@@ -169,7 +171,7 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
       const Vector3& n = manifold.normal;
       const double mu = run_.model.friction(a, b);
       const Vector3 drift = mu > 0.0 ? Vector3(belt(b, n) - belt(a, n)) : Vector3(Vector3::Zero());
-      // However soon a collapse ends: that makes no way along a surface short.
+      // Without `options`: how soon a collapse ends says nothing about speeds along the surface.
       const double still = still_part * rest_speed(a, b, at_a, at_b, {});
       found.group.patches.push_back(
           {found.place(a), found.place(b), manifold, slow, mu, drift, still});
@@ -219,11 +221,11 @@ void EventModes::bring_group(std::span<const BodyIndex> bodies, Instant t) {
 
 // --- Impacts -----------------------------------------------------------------------------------
 
-/// Within a step of bodies that turn in touch, what holds them is at rest but for what their motion
-/// is off: that is taken out, so that a blow to what rests is no blow to what parts. What parts
-/// faster takes no part in the impact.
+/// Removes from an impact, within a step of bodies that turn in touch, the rates by which their
+/// motion is off: contacts that hold would be parting by them, and pass nothing on. Contacts that
+/// part faster take no part in the impact.
 void EventModes::still_hold(ContactGroup& group, GroupImpact& impact) const {
-  constexpr double off = 1e-9;  // of the speeds: steps are off by some 1e-12 of them
+  constexpr double off = 1e-9;  // of the speeds; steps err by some 1e-12 of them
   ContactSystem held;
   held.bodies = impact.system.bodies;
   for (std::size_t p = 0; p < impact.pairs.size(); ++p) {
@@ -307,7 +309,7 @@ std::optional<EventModes::Approach> EventModes::fastest_points(BodyIndex a, Body
   if (!(fastest < 0.0)) {
     return std::nullopt;
   }
-  constexpr double alike = 1e-6;  // points that land together
+  constexpr double alike = 1e-6;  // relative: points this alike land together
   Contact middle{Vector3::Zero(), m.normal, infinity};
   double count = 0.0;
   for (std::size_t k = 0; k < m.size; ++k) {

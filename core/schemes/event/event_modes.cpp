@@ -23,41 +23,42 @@ EventModes::EventModes(EventRun& run, EventMotions& motions, EventPredictor& pre
       has_turned_(run.model.size()) {}
 
 bool EventModes::settle(std::span<const BodyIndex> seeds, Instant t, const Adopt& adopt,
-                        const Wish& wish) {
-  Gathered found = gather(seeds, t, wish);
+                        const SettleOptions& options) {
+  Gathered found = gather(seeds, t, options);
   why_not_ = found.refusal;
   if (why_not_.empty() && found.driven) {
     return settle_driven(found, t, adopt);
   }
-  if (why_not_.empty() && found.pairs.size() < wish.pairs) {
+  if (why_not_.empty() && found.pairs.size() < options.pairs) {
     why_not_ = "some are still on their way";
   }
   if (!why_not_.empty()) {
     return false;
   }
-  if (wish.turning_only && !has_turned(seeds)) {
+  if (options.turning_only && !has_turned(seeds)) {
     return false;
   }
-  if (wish.turning_only) {
-    why_not_ = contact_mode(found.group, {wish.unloaded, wish.unite}).refusal;
+  if (options.turning_only) {
+    why_not_ = contact_mode(found.group, {options.unloaded, options.unite}).refusal;
     if (why_not_.empty()) {
       return false;
     }
-  } else if (settle_flat(std::move(found), t, adopt, wish)) {
+  } else if (settle_flat(std::move(found), t, adopt, options)) {
     return true;
   }
-  return (wish.may_turn || has_turned(seeds)) && settle_turning(seeds, t, adopt, wish);
+  return (options.may_turn || has_turned(seeds)) && settle_turning(seeds, t, adopt, options);
 }
 
-/// Nothing turns but what may.
-bool EventModes::settle_flat(Gathered found, Instant t, const Adopt& adopt, const Wish& wish) {
+/// Settles a group in which nothing turns; false, with `why_not_`, if something must.
+bool EventModes::settle_flat(Gathered found, Instant t, const Adopt& adopt,
+                             const SettleOptions& options) {
   while (why_not_.empty()) {
-    const FlatMode mode = contact_mode(found.group, {wish.unloaded, wish.unite});
+    const FlatMode mode = contact_mode(found.group, {options.unloaded, options.unite});
     why_not_ = mode.refusal;
     if (mode.curved) {
       return settle_curved(found, t, adopt);
     }
-    if (why_not_.empty() && wish.pressed && !found.presses(*wish.pressed, mode)) {
+    if (why_not_.empty() && options.pressed && !found.presses(*options.pressed, mode)) {
       why_not_ = "nothing presses";
     }
     if (!why_not_.empty()) {
@@ -69,7 +70,7 @@ bool EventModes::settle_flat(Gathered found, Instant t, const Adopt& adopt, cons
     if (!why_not_.empty()) {
       return false;
     }
-    // A ball that is beyond the rim already is carried by nothing.
+    // A ball that is beyond the rim already is not carried: its patch goes.
     const auto over = std::find_if(until.begin(), until.end(),
                                    [&](double s) { return s <= at_once * run_.epoch(); });
     if (over != until.end()) {
@@ -84,11 +85,12 @@ bool EventModes::settle_flat(Gathered found, Instant t, const Adopt& adopt, cons
     }
     commit(found, mode, t, adopt);
     for (std::size_t p = 0; p < until.size(); ++p) {
-      run_.push_in_epoch(t + until[p], Due::mode_ends, found.pairs[p].first, found.pairs[p].second);
+      run_.push_in_epoch(t + until[p], DueKind::mode_ends, found.pairs[p].first,
+                         found.pairs[p].second);
     }
     for (std::size_t p = 0; p < mode.slip_ends.size(); ++p) {
       if (mode.kept[p] != 0) {
-        run_.push_in_epoch(t + mode.slip_ends[p], Due::mode_ends, found.pairs[p].first,
+        run_.push_in_epoch(t + mode.slip_ends[p], DueKind::mode_ends, found.pairs[p].first,
                            found.pairs[p].second);
       }
     }
@@ -97,8 +99,12 @@ bool EventModes::settle_flat(Gathered found, Instant t, const Adopt& adopt, cons
   return false;
 }
 
+/// A mode that was found is what happens: the group jumps to it. Not by `jump`, for its bodies jump
+/// together: their states were solved for together, all are booked and changed before the first is
+/// launched, and all are launched before any is asked what it meets. `gather` has their states, so
+/// nobody is brought again, which would undo an impact that led here.
 void EventModes::commit(const Gathered& found, const FlatMode& mode, Instant t, const Adopt& adopt,
-                        const Alone* alone, const Turning* turning) {
+                        const GivenMotion* alone, const Turning* turning) {
   double dissipated = 0.0;
   for (std::size_t k = 0; k < found.bodies.size(); ++k) {
     const BodyIndex i = found.bodies[k];
@@ -149,7 +155,7 @@ void EventModes::commit(const Gathered& found, const FlatMode& mode, Instant t, 
       }
     }
   }
-  rub(found, mode, t, changes, alone, turning);
+  set_friction(found, mode, t, changes, alone, turning);
   tell(changes, t);
   for (const BodyIndex i : found.bodies) {
     if (run_.model.is_free(i)) {
@@ -158,15 +164,16 @@ void EventModes::commit(const Gathered& found, const FlatMode& mode, Instant t, 
   }
 }
 
-/// Of the surface of i along itself, beside what i does, m/s.
+/// Velocity of the surface of i along itself, relative to body i, m/s: that of a belt.
 Vector3 EventModes::belt(BodyIndex i, const Vector3& normal) const {
   const Vector3 v = run_.model.entity(i).surface_velocity(run_.model.body(i), motions_.now(i));
   return v - normal * normal.dot(v);
 }
 
-/// Who rubs on whom from now on, and what of it is new.
-void EventModes::rub(const Gathered& found, const FlatMode& mode, Instant t,
-                     std::vector<Change>& changes, const Alone* alone, const Turning* turning) {
+/// Which surfaces slide along or drive which from now on, and which of that is new.
+void EventModes::set_friction(const Gathered& found, const FlatMode& mode, Instant t,
+                              std::vector<Change>& changes, const GivenMotion* alone,
+                              const Turning* turning) {
   for (std::size_t p = 0; p < mode.slip.size(); ++p) {
     if (mode.kept[p] == 0) {
       continue;
@@ -192,21 +199,22 @@ void EventModes::rub(const Gathered& found, const FlatMode& mode, Instant t,
     }
     if (now == Slip::slides || moves_by_itself(a) || moves_by_itself(b)) {
       const Vector3& force = mode.force[p];
-      motions_.rub(run_.model.is_free(b) ? b : a, t,
-                   {.a = a,
-                    .b = b,
-                    .slides = now == Slip::slides,
-                    .rides = now != Slip::slides && found.driven.has_value(),
-                    .curved = turning != nullptr || (alone != nullptr && alone->curved),
-                    .force = force,
-                    .along = force - n * n.dot(force),
-                    .arm_a = arm(patch.a, 1.0),
-                    .arm_b = arm(patch.b, -1.0),
-                    .belt_a = belt(a, n),
-                    .belt_b = belt(b, n),
-                    .spent = turning != nullptr ? turning->step.rubbed[p]
-                             : alone != nullptr ? alone->spent
-                                                : Polynomial<3>()});
+      motions_.add_surface_force(
+          run_.model.is_free(b) ? b : a, t,
+          {.a = a,
+           .b = b,
+           .slides = now == Slip::slides,
+           .rides = now != Slip::slides && found.driven.has_value(),
+           .curved = turning != nullptr || (alone != nullptr && alone->curved),
+           .force = force,
+           .along = force - n * n.dot(force),
+           .arm_a = arm(patch.a, 1.0),
+           .arm_b = arm(patch.b, -1.0),
+           .belt_a = belt(a, n),
+           .belt_b = belt(b, n),
+           .spent = turning != nullptr ? turning->step.rubbed[p]
+                    : alone != nullptr ? alone->spent
+                                       : Polynomial<3>()});
     }
   }
 }
@@ -217,8 +225,8 @@ void EventModes::tell(std::span<const Change> changes, Instant t) {
   }
 }
 
-/// The graph as it is from now on; contacts that end, that begin, and those that will have begun
-/// when what is left of their bounces has died down.
+/// Updates the contact graph; returns the contacts that end and those that begin now. Contacts
+/// whose bounces have not died down begin later, by an event of their own.
 std::vector<EventModes::Change> EventModes::join_and_part(const Gathered& found,
                                                           const FlatMode& mode, Instant t) {
   std::vector<Change> changes;
@@ -266,7 +274,7 @@ std::vector<EventModes::Change> EventModes::join_and_part(const Gathered& found,
     const double still = hops ? 2.0 * mode.rate[p] / (pressing * (1.0 - e)) : 0.0;
     patch.begins = t + still;
     if (still > 0.0 && patch.begins < Instant::never()) {
-      run_.agenda.push(patch.begins, Due::contact_begins, a, b);
+      run_.agenda.push(patch.begins, DueKind::contact_begins, a, b);
     } else {
       patch.told = true;
       changes.push_back({EventKind::contact_begins, a, b});
@@ -288,7 +296,7 @@ void EventModes::join(BodyIndex i, BodyIndex j, Instant t, double remaining) {
   const auto [a, b] = run_.agenda.before(i, j) ? std::pair{i, j} : std::pair{j, i};
   Patch& patch = graph_.join(a, b);
   patch.begins = t + remaining;
-  run_.agenda.push(patch.begins, Due::contact_begins, a, b);
+  run_.agenda.push(patch.begins, DueKind::contact_begins, a, b);
 }
 
 std::vector<EventModes::Change> EventModes::part(std::span<const BodyIndex> bodies) {

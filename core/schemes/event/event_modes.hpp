@@ -31,7 +31,8 @@ class EventModes {
   /// When the bounces of a ball on the face that supports it have died down; it is supported by
   /// nothing but the group from then on.
   using Adopt = std::function<Instant(BodyIndex ball)>;
-  struct Wish {
+  /// Which groups `settle` may keep, and how.
+  struct SettleOptions {
     bool unloaded = false;   ///< keep what touches without pressing, too
     bool unite = false;      ///< an accumulation ends here: what is slow stays together
     double remaining = 0.0;  ///< unite: how long it would still have taken, s
@@ -48,7 +49,7 @@ class EventModes {
   /// Settles all that touches the seeds at t, whose states are at `now`; false, and nothing has
   /// changed, where they cannot go on in touch. `why_not` then says why.
   [[nodiscard]] bool settle(std::span<const BodyIndex> seeds, Instant t, const Adopt& adopt,
-                            const Wish& wish);
+                            const SettleOptions& options);
   [[nodiscard]] const std::string& why_not() const { return why_not_; }
 
   /// Whether contact forces hold this free body.
@@ -57,23 +58,24 @@ class EventModes {
   [[nodiscard]] std::vector<BodyIndex> held_by(BodyIndex surface) const;
   /// Free bodies that are held together with one of these, they included, by name.
   [[nodiscard]] std::vector<BodyIndex> group(std::span<const BodyIndex> seeds) const;
-  /// Books and brings the groups of both: before something changes them.
+  /// Books and brings these bodies, before something changes them.
   void bring_group(std::span<const BodyIndex> bodies, Instant t);
-  /// The patch that approaches fastest among those of the bodies at `now` and the others, with the
-  /// point at which it does: the centroid, or where that does not approach a point of it; nothing
-  /// where all are slower than they may be at rest. `corners_too`: also where one of its points
-  /// does, though its middle does not; always of what has turned.
+  /// Two bodies in touch that approach each other, and where.
   struct Approach {
     BodyIndex a = 0;
     BodyIndex b = 0;
     Contact contact;
-    double speed = 0.0;
+    double speed = 0.0;  ///< m/s, > 0
   };
   /// Where a pair in touch that turns, whose states are at `now`, comes together: the middle of the
-  /// points that approach fastest, however slowly; nothing for others, or where none does.
+  /// points that approach fastest, however slowly; nothing for other pairs, or if none approaches.
   [[nodiscard]] std::optional<Approach> landing(BodyIndex a, BodyIndex b) const;
   /// Whether a contact has no speed along its normal that is worth a hop.
   [[nodiscard]] bool stays(BodyIndex a, BodyIndex b, const Contact& contact) const;
+  /// The pair that approaches fastest among `others` and the pairs in touch of `bodies`, whose
+  /// states are at `now`: at the centroid of its patch, or at a point of it if that does not
+  /// approach. Nothing if all are slower than they may be at rest. `corners_too`: a pair counts
+  /// also if only a point of its patch approaches; so it does always once its bodies have turned.
   [[nodiscard]] std::optional<Approach> worst_approach(std::span<const BodyIndex> bodies,
                                                        std::span<const BodyPair> others,
                                                        bool corners_too = false) const;
@@ -115,24 +117,26 @@ class EventModes {
   struct Gathered;
   /// A step of a group that turns.
   struct Turning;
-  [[nodiscard]] Gathered gather(std::span<const BodyIndex> seeds, Instant t, const Wish& wish);
+  [[nodiscard]] Gathered gather(std::span<const BodyIndex> seeds, Instant t,
+                                const SettleOptions& options);
   [[nodiscard]] double rest_speed(BodyIndex a, BodyIndex b, const BodyState& at_a,
-                                  const BodyState& at_b, const Wish& wish) const;
+                                  const BodyState& at_b, const SettleOptions& options) const;
   [[nodiscard]] std::optional<Approach> approach(BodyIndex a, BodyIndex b, bool corners_too) const;
   [[nodiscard]] std::optional<Approach> fastest_points(BodyIndex a, BodyIndex b) const;
   [[nodiscard]] Twist load(BodyIndex i, const BodyState& state) const;
   /// One body on one surface, along a motion that is no parabola.
-  struct Alone {
+  struct GivenMotion {
     Motion motion;
     bool curved = false;
     Polynomial<3> spent{};  ///< curved: what friction has taken by a time, as the x, J
   };
   void commit(const Gathered& group, const FlatMode& mode, Instant t, const Adopt& adopt,
-              const Alone* alone = nullptr, const Turning* turning = nullptr);
+              const GivenMotion* alone = nullptr, const Turning* turning = nullptr);
   [[nodiscard]] bool settle_curved(const Gathered& found, Instant t, const Adopt& adopt);
-  [[nodiscard]] bool settle_flat(Gathered found, Instant t, const Adopt& adopt, const Wish& wish);
+  [[nodiscard]] bool settle_flat(Gathered found, Instant t, const Adopt& adopt,
+                                 const SettleOptions& options);
   [[nodiscard]] bool settle_turning(std::span<const BodyIndex> seeds, Instant t, const Adopt& adopt,
-                                    const Wish& wish);
+                                    const SettleOptions& options);
   [[nodiscard]] std::string add_touches(Gathered& found, Turning& turning) const;
   [[nodiscard]] std::string add_rims(const Gathered& found, Turning& turning) const;
   [[nodiscard]] static bool presses(const Gathered& found, const Turning& turning,
@@ -158,8 +162,8 @@ class EventModes {
   [[nodiscard]] bool settle_driven(Gathered found, Instant t, const Adopt& adopt);
   [[nodiscard]] std::vector<Change> join_and_part(const Gathered& found, const FlatMode& mode,
                                                   Instant t);
-  void rub(const Gathered& found, const FlatMode& mode, Instant t, std::vector<Change>& changes,
-           const Alone* alone, const Turning* turning);
+  void set_friction(const Gathered& found, const FlatMode& mode, Instant t,
+                    std::vector<Change>& changes, const GivenMotion* alone, const Turning* turning);
   [[nodiscard]] Vector3 belt(BodyIndex i, const Vector3& normal) const;
 
   EventRun& run_;

@@ -33,12 +33,7 @@ EventMotions::EventMotions(EventRun& run, const Method& method)
       flows_(run.model.islands().size()),
       shares_(run.model.islands().size(), 0),
       booked_until_(run.model.islands().size()),
-      now_(scattered<BodyState>(run.model.size()))
-#ifndef NDEBUG
-      ,
-      brought_(run.model.size(), run.time)
-#endif
-{
+      now_(scattered<BodyState>(run.model.size())) {
   const State initial = run.model.initial_state();
   std::copy(initial.begin(), initial.end(), now_.begin());
   for (BodyIndex i = 0; i < now_.size(); ++i) {
@@ -67,8 +62,8 @@ std::unique_ptr<EventMotions::Flow> EventMotions::make_flow(std::size_t island) 
   return flow;
 }
 
-/// Whether an island is one body that falls freely and does not turn, and its stepper can be that
-/// of others too: what such a body needs beside its motion is made again when it is looked at.
+/// Whether an island is one body that falls freely and does not turn, so that all such islands can
+/// share one stepper: its data beside the motion are made anew each time it is looked at.
 bool EventMotions::may_share(std::size_t island) {
   const Island& of = run_.model.islands()[island];
   if (of.bodies.size() != 1 || !of.forces.empty() || of.joints != nullptr ||
@@ -136,9 +131,9 @@ EventMotions::Ties& EventMotions::tie(BodyIndex i) {
   return *ties_[i];
 }
 
-void EventMotions::forget_rubs(BodyIndex i) {
+void EventMotions::forget_surface_forces(BodyIndex i) {
   if (ties_[i] != nullptr) {
-    ties_[i]->rubs.clear();
+    ties_[i]->surface_forces.clear();
     ties_[i]->turns = false;
     ties_[i]->worked.clear();
   }
@@ -200,20 +195,18 @@ void EventMotions::open_pair(BodyIndex a, BodyIndex b, Instant t) {
   }
 }
 
-/// What is forgotten before a launch would be a wrong ledger or a wrong motion, and no error.
+/// A step that was left out before a launch would give a wrong ledger or a wrong motion, and no
+/// error.
 void EventMotions::check_ready([[maybe_unused]] const Flow& flow,
                                [[maybe_unused]] Instant t) const {
   assert(!(booked_until(flow) < t));
-#ifndef NDEBUG
-  for (const BodyIndex k : flow.island.bodies) {
-    assert(brought_[k] == t);
-  }
-#endif
+  assert(std::all_of(flow.island.bodies.begin(), flow.island.bodies.end(),
+                     [&](BodyIndex k) { return run_.jumps.is_brought(k, t); }));
 }
 
 void EventMotions::launch(BodyIndex i, Instant t) {
   for (const BodyIndex k : island(i)) {
-    forget_rubs(k);
+    forget_surface_forces(k);
   }
   Flow& flow = flow_to_launch(i);
   check_ready(flow, t);
@@ -272,7 +265,7 @@ void EventMotions::hold(BodyIndex i, Instant t, const Twist& acceleration) {
   check_ready(flow, t);
   flow.held = true;
   set_support(i, std::nullopt);
-  forget_rubs(i);
+  forget_surface_forces(i);
   set_forces(flow);
   flow.island.constant_force[0] = run_.model.inertia(i).mass * acceleration.linear;
   flow.states[0] = flow.booked[0] = now_[i];
@@ -284,18 +277,19 @@ void EventMotions::hold(BodyIndex i, Instant t, const Twist& acceleration) {
   Motion motion = Motion::ballistic(t, std::numeric_limits<double>::infinity(), now_[i].pose,
                                     now_[i].twist, acceleration.linear);
   if (!acceleration.angular.isZero(0.0)) {
-    // Of a sphere, which looks the same all around: its spin is followed, its orientation is not.
+    // Only spheres come here. Their spin is followed; their orientation is not, as it changes
+    // nothing.
     motion.rotation = RotationKind::constant_rate;
     motion.angular_velocity = Polynomial<3>(now_[i].twist.angular, acceleration.angular);
   }
   set_motion(i, motion);
 }
 
-void EventMotions::rub(BodyIndex i, Instant t, Rub rub) {
-  rub.from_a = at(rub.a, t);
-  rub.from_b = at(rub.b, t);
-  rub.booked = rub.begun = t;
-  tie(i).rubs.push_back(rub);
+void EventMotions::add_surface_force(BodyIndex i, Instant t, SurfaceForce force) {
+  force.from_a = at(force.a, t);
+  force.from_b = at(force.b, t);
+  force.booked = force.begun = t;
+  tie(i).surface_forces.push_back(force);
 }
 
 void EventMotions::go_on(BodyIndex i, Instant t) {
@@ -304,14 +298,14 @@ void EventMotions::go_on(BodyIndex i, Instant t) {
   }
   book(i, t);
   if (support(i)) {
-    bring(i, t);  // where its surface took it, which the stepper does not know
+    bring(i, t);  // its surface took it there; the stepper does not know
     launch(i, t);
   } else {
     next_segment(flow_of(i), t);
   }
 }
 
-/// One stepper step, as motions.
+/// Takes one step of the stepper, and makes motions of it.
 void EventMotions::next_segment(Flow& flow, Instant t) {
   if (!is_shared(flow)) {
     flow.booked = flow.states;
@@ -334,7 +328,7 @@ void EventMotions::next_segment(Flow& flow, Instant t) {
   flow.projection = step.projection;
   flow.exact = flow.stepper->info().order == 0;  // a closed form may have given up
   const std::span motions(motions_.data(), flow.states.size());
-  for (Motion& motion : motions) {  // what not all steppers tell, and another has told
+  for (Motion& motion : motions) {  // not every stepper sets these
     motion.rotation_rate.setZero();
     motion.error_radius = 0.0;
   }
@@ -346,7 +340,7 @@ void EventMotions::next_segment(Flow& flow, Instant t) {
   const BodyIndex first = flow.island.bodies.front();
   assert(!is_shared(flow) || std::isinf(step.advanced));
   if (std::isfinite(step.advanced)) {
-    run_.agenda.push(t + step.advanced, Due::segment_end, first, first);
+    run_.agenda.push(t + step.advanced, DueKind::segment_end, first, first);
   }
 }
 
@@ -354,7 +348,7 @@ void EventMotions::next_segment(Flow& flow, Instant t) {
 void EventMotions::drive(BodyIndex i, Instant t) {
   set_motion(i, run_.model.body(i).drive->motion(t, run_.epoch()));
   bring(i, t);
-  run_.agenda.push(end_of(i), Due::segment_end, i, i);
+  run_.agenda.push(end_of(i), DueKind::segment_end, i, i);
 }
 
 void EventMotions::keep_motion(BodyIndex i, const Motion& motion) {
@@ -367,17 +361,20 @@ void EventMotions::keep_motion(BodyIndex i, const Motion& motion) {
 void EventMotions::set_motion(BodyIndex i, const Motion& motion) {
   keep_motion(i, motion);
   run_.agenda.renew(i);
+  if constexpr (watches_jumps) {
+    run_.jumps.launched(i);
+  }
   if (run_.wants_motions) {
     tell_motion(i, motion);
   }
 }
 
 void EventMotions::tell_motion(BodyIndex i, const Motion& motion) {
-  if (run_.boxes_on.empty() || is_zero(run_.boxes_on[i])) {
+  if (run_.boxes_crossed.empty() || is_zero(run_.boxes_crossed[i])) {
     return run_.recorder.motion(i, motion);
   }
   Motion told = motion;
-  told.position[0] += run_.way_told(i);
+  told.position[0] += run_.recorded_offset(i);
   run_.recorder.motion(i, told);
 }
 
@@ -393,7 +390,7 @@ void EventMotions::go_on_as(BodyIndex i, const Image& n) {
         shift;
   }
   for (std::size_t k = 0; k < 3; ++k) {
-    run_.boxes_on[i][k] -= n[k];
+    run_.boxes_crossed[i][k] -= n[k];
   }
 }
 
@@ -415,7 +412,7 @@ void EventMotions::set_fields(BodyIndex i, std::vector<BodyIndex> fields) {
   }
 }
 
-/// A supported ball rides on its surface until its face ends or draws away.
+/// Makes a supported ball ride on its surface, until the face ends or draws away.
 void EventMotions::hold(Flow& flow, Instant t) {
   const BodyIndex i = flow.island.bodies.front();
   const std::optional<Support>& support = ties(i).support;
@@ -444,7 +441,7 @@ void EventMotions::hold(Flow& flow, Instant t) {
     };
     until = std::min(until, release_time(contact_force, std::min(until, left)));
   }
-  run_.push_in_epoch(t + until, Due::support_ends, i, surface);
+  run_.push_in_epoch(t + until, DueKind::support_ends, i, surface);
 }
 
 void EventMotions::carry(BodyIndex i, BodyIndex hand, const BodyState& state, Instant t) {
@@ -460,6 +457,9 @@ void EventMotions::carry(BodyIndex i, BodyIndex hand, const BodyState& state, In
   motion.quaternion = Motion::at_rest(t, state.pose).quaternion;
   motion.angular_velocity = {};
   set_motion(i, motion);
+  if constexpr (watches_jumps) {
+    run_.jumps.launched(i, false);
+  }
 }
 
 // --- Forces ------------------------------------------------------------------------------------
@@ -477,12 +477,12 @@ Vector3 EventMotions::field_forces_at(BodyIndex i) const {
   return sum;
 }
 
-/// What is constant over a segment, N.
+/// The force that is constant over a segment, N.
 Vector3 EventMotions::net_force(BodyIndex i) const {
   return run_.model.gravity_force(i) + ties(i).field_force;
 }
 
-/// That and what depends on the state, of a body that is alone in its island, N.
+/// The whole force on a body that is alone in its island, N: constant, and dependent on the state.
 Vector3 EventMotions::acting_force(BodyIndex i, Instant t, const BodyState& state) const {
   Wrench wrench{run_.model.gravity_force(i) + field_forces_at(i), Vector3::Zero()};
   for (const Force* force : run_.model.islands()[run_.model.island_of(i)].forces) {
@@ -524,7 +524,7 @@ void EventMotions::set_forces(Flow& flow) {
     }
     Vector3 force = net_force(i);
     if (const auto& support = ties(i).support) {
-      for (int pass = 0; pass < 2; ++pass) {  // the first leaves roundoff of what it takes away
+      for (int pass = 0; pass < 2; ++pass) {  // the first leaves its own roundoff
         force -= support->normal * support->normal.dot(force);
       }
       if (!flow.island.forces.empty()) {
@@ -553,13 +553,13 @@ std::int64_t EventMotions::evaluations() const {
   return sum;
 }
 
-void EventMotions::Rub::persist(Archive& archive) {
+void EventMotions::SurfaceForce::persist(Archive& archive) {
   archive(a, b, slides, rides, curved, spent, begun, force, along, arm_a, arm_b, belt_a, belt_b,
           from_a, from_b, booked);
 }
 
 void EventMotions::Ties::persist(Archive& archive) {
-  archive(support, fields, field_force, rubs, turns, worked);
+  archive(support, fields, field_force, surface_forces, turns, worked);
   archive.require(turns ? worked.size() == 1 : worked.empty());
 }
 
@@ -590,8 +590,8 @@ void EventMotions::persist_bodies(Archive& archive) {
     for (const BodyIndex field : fields(i)) {
       archive.require(field < ties_.size());
     }
-    for (const Rub& rub : ties(i).rubs) {
-      archive.require(rub.a < ties_.size() && rub.b < ties_.size());
+    for (const SurfaceForce& force : ties(i).surface_forces) {
+      archive.require(force.a < ties_.size() && force.b < ties_.size());
     }
   }
 }
@@ -621,7 +621,7 @@ void EventMotions::persist(Archive& archive) {
   }
 }
 
-/// What is no part of a checkpoint; forces are what they were when it was launched.
+/// Restores what a checkpoint leaves out; forces are those of the launch.
 void EventMotions::set_forces_as_launched(Flow& flow) {
   const std::vector<Vector3> constant = flow.island.constant_force;
   given_.clear();

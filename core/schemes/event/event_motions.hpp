@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 namespace kairos {
@@ -85,7 +86,7 @@ class EventMotions {
   void put_onto_joints(BodyIndex i, Instant t);
 
   /// What a force does between two surfaces in touch that slide along each other, or are driven.
-  struct Rub {
+  struct SurfaceForce {
     BodyIndex a = 0;
     BodyIndex b = 0;
     bool slides = false;
@@ -106,7 +107,7 @@ class EventMotions {
     void persist(Archive& archive);
   };
   /// Body i, held since t, is rubbed until it is held or launched anew: its work is booked with i.
-  void rub(BodyIndex i, Instant t, Rub rub);
+  void add_surface_force(BodyIndex i, Instant t, SurfaceForce force);
   /// The segment of a body has ended: the next one.
   void go_on(BodyIndex i, Instant t);
   /// Body i has the hand's translation from t on, and its own orientation; what takes it from where
@@ -156,6 +157,8 @@ class EventMotions {
   /// Tells the recorder what happened to two bodies whose states did not jump.
   void note(EventKind kind, BodyIndex a, BodyIndex b, Instant t, Grade grade = Grade::exact);
   [[nodiscard]] std::int64_t evaluations() const;
+  /// What the event that is over left out of a jump, or nothing; see `JumpWatch`.
+  [[nodiscard]] std::string_view left_out() const { return run_.jumps.left_out(now_); }
 
   void persist(Archive& archive);
 
@@ -165,11 +168,13 @@ class EventMotions {
     std::optional<Support> support{};
     std::vector<BodyIndex> fields{};
     Vector3 field_force = Vector3::Zero();  ///< N, as of the last launch
-    std::vector<Rub> rubs{};
+    std::vector<SurfaceForce> surface_forces{};
     bool turns = false;                   ///< while it touches
     std::vector<Polynomial<3>> worked{};  ///< see `Turn`; none while nothing turns
 
-    [[nodiscard]] bool any() const { return support || !fields.empty() || !rubs.empty() || turns; }
+    [[nodiscard]] bool any() const {
+      return support || !fields.empty() || !surface_forces.empty() || turns;
+    }
     void persist(Archive& archive);
   };
   /// An island. Its states are those at the end of the segment, and so is its projection.
@@ -198,7 +203,7 @@ class EventMotions {
   [[nodiscard]] Vector3 acting_force(BodyIndex i, Instant t, const BodyState& state) const;
 
   void book(Flow& flow, Instant t);
-  void book_rubs(BodyIndex i, Instant t);
+  void book_surface_forces(BodyIndex i, Instant t);
   [[nodiscard]] double book_turn(BodyIndex i, Instant from, Instant to);
   [[nodiscard]] double riding_work(const Flow& flow, Instant t);
   [[nodiscard]] double new_roundoff(Flow& flow, Instant t);
@@ -217,15 +222,15 @@ class EventMotions {
   [[nodiscard]] Instant booked_until(const Flow& flow) const { return booked_until_[flow.number]; }
   [[nodiscard]] const Ties& ties(BodyIndex i) const { return ties_[i] ? *ties_[i] : no_ties_; }
   [[nodiscard]] Ties& tie(BodyIndex i);
-  void forget_rubs(BodyIndex i);
+  void forget_surface_forces(BodyIndex i);
   void swap_aside();
   void persist_bodies(Archive& archive);
   void set_forces_as_launched(Flow& flow);
-  /// `now` of body i is its state at t. What is launched must be: asserts hold it.
-  void mark_brought([[maybe_unused]] BodyIndex i, [[maybe_unused]] Instant t) {
-#ifndef NDEBUG
-    brought_[i] = t;
-#endif
+  /// `now` of body i is its state at t.
+  void mark_brought(BodyIndex i, Instant t) {
+    if constexpr (watches_jumps) {
+      run_.jumps.brought(i, t, now_[i]);
+    }
   }
   void check_ready(const Flow& flow, Instant t) const;
 
@@ -245,9 +250,6 @@ class EventMotions {
   State now_;
   std::vector<BodyIndex> led_;  ///< bodies that are not free
   State aside_;                 ///< of these, what is not `now`: as they were drawn last
-#ifndef NDEBUG
-  std::vector<Instant> brought_;  ///< by body: when `now` is
-#endif
   // Scratch, by place in an island.
   std::vector<Motion> motions_;
   std::vector<BodyState> to_;

@@ -28,6 +28,9 @@ EventPredictor::EventPredictor(EventRun& run, const EventMotions& motions, const
 
 void EventPredictor::predict(BodyIndex i, Instant t, BodyIndex except) {
   since_[i] = t;
+  if constexpr (watches_jumps) {
+    run_.jumps.predicted(i);
+  }
   if (!neighbourhood_) {
     for (const BodyIndex j : partners_[i]) {
       if (j != except) {
@@ -46,9 +49,15 @@ void EventPredictor::predict(BodyIndex i, Instant t, BodyIndex except) {
   run_.agenda.file(i);
 }
 
+void EventPredictor::predict_island(BodyIndex i, Instant t) {
+  for (const BodyIndex k : motions_.island(i)) {
+    predict(k, t);
+  }
+}
+
 void EventPredictor::cross(BodyIndex i, Instant t) {
   if (!neighbourhood_) {
-    return;  // nobody crosses; a forged checkpoint may say so
+    return;  // no body crosses here, but a forged checkpoint may say so
   }
   neighbours_.clear();
   run_.agenda.cross(i, neighbourhood_->cross(i, motions_.moving(i), t, last_of(i), neighbours_));
@@ -58,7 +67,7 @@ void EventPredictor::cross(BodyIndex i, Instant t) {
 
 void EventPredictor::renew(BodyIndex i, Instant t) {
   if (!neighbourhood_) {
-    return;  // as above: nobody is filed
+    return;  // no body is filed here, but a forged checkpoint may say so
   }
   neighbours_.clear();
   neighbourhood_->near(i, neighbours_);
@@ -72,6 +81,11 @@ void EventPredictor::enter(BodyIndex i, Instant t) {
 
 void EventPredictor::predict_all(Instant t) {
   std::fill(since_.begin(), since_.end(), t);
+  if constexpr (watches_jumps) {
+    for (BodyIndex i = 0; i < since_.size(); ++i) {
+      run_.jumps.predicted(i);
+    }
+  }
   if (!neighbourhood_) {
     for (const auto& [a, b] : run_.model.pairs()) {
       predict_near(a, {b});
@@ -93,10 +107,10 @@ void EventPredictor::predict_all(Instant t) {
     survey(i, before_all);
     run_.agenda.file(i);
   }
-  neighbours_ = {};  // everybody is near a wall
+  neighbours_ = {};  // a wall has every body as its neighbour: too large to keep
 }
 
-/// Asks about i and all of `neighbours_`.
+/// Asks when i meets each of `neighbours_`.
 void EventPredictor::survey(BodyIndex i, Instant known) {
   std::size_t balls = 0;
   const bool flies = motions_.flies(i);
@@ -124,8 +138,8 @@ void EventPredictor::survey(BodyIndex i, Instant known) {
   meet_balls(i, balls, known);
 }
 
-/// Of `balls_`, as many as there are now, those first that i could meet first: of the others it
-/// need not know, as it is asked again when its earliest meeting comes up.
+/// Asks about the first `balls` of `balls_`, earliest possible meeting first, and ends when no
+/// other can be earlier: body i is asked again when its earliest meeting comes up.
 void EventPredictor::meet_balls(BodyIndex i, std::size_t balls, Instant known) {
   const BallFlight& own = motions_.flight(i);
   run_.detector.clear_times(own, std::span(flights_).first(balls), run_.options.toi_tolerance,
@@ -148,7 +162,7 @@ void EventPredictor::meet_balls(BodyIndex i, std::size_t balls, Instant known) {
   }
 }
 
-/// As an image of it.
+/// Moves a flight to its periodic image n.
 void EventPredictor::move_to(const Image& n, BallFlight& flight) const {
   const auto& box = run_.model.scene().periodic;
   if (!box || is_zero(n)) {
@@ -156,16 +170,16 @@ void EventPredictor::move_to(const Image& n, BallFlight& flight) const {
   }
   const Vector3 shift = box->shift(n);
   flight.position += shift;
-  // The sum is rounded, and a query may round the other way.
+  // The sum rounds, and a query may round the other way.
   constexpr double roundings = 8.0 * std::numeric_limits<double>::epsilon();
   flight.radius += roundings * (flight.position.lpNorm<1>() + shift.lpNorm<1>());
 }
 
-/// Whether the balls that bound the two are clear of each other for as long as is asked: what
-/// tumbles is asked about anew with each segment of its rotation, and is far from most.
-bool EventPredictor::stay_clear(const Question& of) const {
+/// Whether the balls that bound the two stay apart for the whole query. A body that tumbles is
+/// asked about anew with each segment of its rotation, and is far from most others.
+bool EventPredictor::stay_clear(const PairQuery& of) const {
   if (!neighbourhood_ || (motions_.flies(of.a) && motions_.flies(of.b))) {
-    return false;  // few bodies, or balls that have been asked about
+    return false;  // not worth it for few bodies; done already for two balls
   }
   const BallFlight& a = motions_.flight(of.a);
   BallFlight b = motions_.flight(of.b);
@@ -178,7 +192,7 @@ bool EventPredictor::stay_clear(const Question& of) const {
   return std::max(a.start, b.start) + clear > of.from + of.duration;
 }
 
-/// Whether i needs to know only of its earliest meeting, if that is one of these.
+/// Whether body i keeps only its earliest meeting, among those with bodies like `with`.
 bool EventPredictor::keeps_meeting(BodyIndex i, BodyIndex with) const {
   return neighbourhood_ && motions_.flies(i) &&
          (motions_.flies(with) ||
@@ -240,7 +254,7 @@ void EventPredictor::ask(BodyIndex i, const Neighbour& other, Instant from, Inst
     return;
   }
   double duration = std::min({motions_.end_of(a), motions_.end_of(b), run_.epoch_end()}) - from;
-  for (const BodyIndex k : {a, b}) {  // a step of 1e-22 s is lost beside the time of day
+  for (const BodyIndex k : {a, b}) {  // end - from would lose a step of 1e-22 s
     if (motions_.start_of(k) == from) {
       duration = std::min(duration, motions_.duration_of(k));
     }
@@ -248,31 +262,31 @@ void EventPredictor::ask(BodyIndex i, const Neighbour& other, Instant from, Inst
   if (!(duration > 0.0)) {
     return;
   }
-  const Question question{
+  const PairQuery query{
       a, b, from, duration, known, keeps_meeting(i, j), i, in_order ? other.image : -other.image};
   if (leaving) {
-    predict_parting(question, Due::clear_of_hand);
+    predict_parting(query, DueKind::clear_of_hand);
   } else if (motions_.is_in_field(a, b) || motions_.is_in_field(b, a)) {
-    predict_parting(question, Due::field_left);
-  } else if (!stay_clear(question)) {
-    predict_meeting(question);
+    predict_parting(query, DueKind::field_left);
+  } else if (!stay_clear(query)) {
+    predict_meeting(query);
   }
 }
 
-/// What is due of a pair, unless it has been dealt with.
-void EventPredictor::push(const Question& of, double after, Due due, double patience,
+/// Puts what is due of a pair on the agenda, unless it has been dealt with.
+void EventPredictor::push(const PairQuery& of, double after, DueKind kind, double bracket,
                           bool decided) {
   const Instant t = of.from + after;
   if (!(of.known < t)) {
-    if (due == Due::recheck) {  // what it told is over: what follows is not known yet
+    if (kind == DueKind::recheck) {  // the answer ends before `known`: ask about what follows
       ask(of.a, {of.b, of.image}, t, of.known);
     }
     return;
   }
-  if (of.kept && due == Due::impact && decided) {
-    run_.agenda.meet(of.asker, of.asker == of.a ? of.b : of.a, t, patience);
+  if (of.kept && kind == DueKind::impact && decided) {
+    run_.agenda.meet(of.asker, of.asker == of.a ? of.b : of.a, t, bracket);
   } else {
-    run_.agenda.push(t, due, of.a, of.b, patience, decided, of.image);
+    run_.agenda.push(t, kind, of.a, of.b, bracket, decided, of.image);
   }
 }
 
@@ -282,8 +296,8 @@ TimeOfImpact EventPredictor::counted(const TimeOfImpact& toi) {
   return toi;
 }
 
-/// How one of the two moves as the other sees it.
-Motion EventPredictor::motion_of(BodyIndex i, const Question& of) const {
+/// The motion of one of the two, as the other sees it: perhaps as an image.
+Motion EventPredictor::motion_of(BodyIndex i, const PairQuery& of) const {
   Motion motion = motions_.of(i);
   if (is_imaged(of) && i == mover(of.a, of.b)) {
     motion.position[0] += run_.model.scene().periodic->shift(i == of.b ? of.image : -of.image);
@@ -291,7 +305,7 @@ Motion EventPredictor::motion_of(BodyIndex i, const Question& of) const {
   return motion;
 }
 
-TimeOfImpact EventPredictor::time_of_impact(const Question& of, double duration) {
+TimeOfImpact EventPredictor::time_of_impact(const PairQuery& of, double duration) {
   const Window window{of.from, duration};
   if (!is_imaged(of)) {
     return counted(run_.detector.time_of_impact(motions_.moving(of.a), motions_.moving(of.b),
@@ -304,8 +318,8 @@ TimeOfImpact EventPredictor::time_of_impact(const Question& of, double duration)
                                               run_.options.toi_tolerance));
 }
 
-/// `touching_gap` where one of the two is told as an image.
-double EventPredictor::allowed_gap(const Question& of) const {
+/// `touching_gap`, also where one of the two is seen as an image.
+double EventPredictor::allowed_gap(const PairQuery& of) const {
   const double gap = touching_gap(of.a, of.b);
   if (!is_imaged(of)) {
     return gap;
@@ -314,7 +328,7 @@ double EventPredictor::allowed_gap(const Question& of) const {
                    run_.model.scene().periodic->shift(of.image).lpNorm<1>();
 }
 
-/// In the epoch, or before the motion of body i ends, m.
+/// The largest coordinate that body i reaches in an epoch or before its motion ends, m.
 double EventPredictor::coordinates_reached(BodyIndex i) const {
   if (motions_.is_flight(i)) {
     const BallFlight& flight = motions_.flight(i);
@@ -346,76 +360,75 @@ double EventPredictor::touching_gap(BodyIndex a, BodyIndex b) const {
     extent = std::min(extent, smallest_extent(run_.model.shape(i)));
   }
   const double asked = run_.options.toi_tolerance;
-  // The roundoff that the detectors' default tolerance has: 704 u of what coordinates reach, u half
-  // of epsilon.
+  // The roundoff in the detectors' default tolerance: 704 u of the largest coordinates, where u is
+  // half of epsilon.
   const double roundoff = 352.0 * std::numeric_limits<double>::epsilon() * (coordinates + radii);
   return 2.0 * ((asked > 0.0 ? asked : 1e-9 * extent) + roundoff + errors);
 }
 
-/// Undecided, and far from touch: the detector ran out of work. What it proved free of contact is
-/// left behind, and what follows is asked in shorter windows.
-void EventPredictor::look_nearer(const Question& question, TimeOfImpact toi) {
+/// The answer is undecided and the two are far apart: the detector ran out of work. Skips the time
+/// that it proved free of contact, and asks about what follows in shorter windows.
+void EventPredictor::look_nearer(const PairQuery& query, TimeOfImpact toi) {
   constexpr double worth_it = 1.0 / 16.0;  // of the window
   constexpr int most_tries = 40;           // to 1e-24 of the window
-  const Instant t = question.from;
-  const double allowed = allowed_gap(question);
-  double duration = question.duration;
+  const Instant t = query.from;
+  const double allowed = allowed_gap(query);
+  double duration = query.duration;
   for (int k = 0; k < most_tries; ++k) {
     const bool touching = toi.status != ToiStatus::undecided || toi.gap <= allowed;
     if (touching && toi.status != ToiStatus::separated) {
-      return push_meeting(question, toi);
+      return push_meeting(query, toi);
     }
     const double free = toi.status == ToiStatus::separated ? duration : toi.t_lo;
     if (free >= worth_it * duration) {
-      return push(question, free, Due::recheck);
+      return push(query, free, DueKind::recheck);
     }
     duration *= 0.25;
-    toi = time_of_impact(question, duration);
+    toi = time_of_impact(query, duration);
   }
-  run_.stop(t,
-            fmt::format("undecided: whether {} meet, {} m apart, in the next {} s: the detector "
-                        "'{}' ran out of work; allowed: a slower rotation, a larger --tolerance, "
-                        "or another detector",
-                        run_.names(question.a, question.b), toi.gap, duration,
-                        run_.detector.info().name));
+  run_.stop(
+      t, fmt::format("undecided: whether {} meet, {} m apart, in the next {} s: the detector "
+                     "'{}' ran out of work; allowed: a slower rotation, a larger --tolerance, "
+                     "or another detector",
+                     run_.names(query.a, query.b), toi.gap, duration, run_.detector.info().name));
 }
 
-/// A field is entered where contact is proven; solids never get that far.
-void EventPredictor::push_meeting(const Question& of, const TimeOfImpact& toi) {
+/// A field is entered where overlap is proven, at t_hi; solids strike before that, at t_lo.
+void EventPredictor::push_meeting(const PairQuery& of, const TimeOfImpact& toi) {
   const bool field = run_.model.is_field(of.a) || run_.model.is_field(of.b);
-  push(of, field ? toi.t_hi : toi.t_lo, field ? Due::field_entered : Due::impact,
+  push(of, field ? toi.t_hi : toi.t_lo, field ? DueKind::field_entered : DueKind::impact,
        toi.t_hi - toi.t_lo, toi.status == ToiStatus::impact);
 }
 
-void EventPredictor::predict_meeting(const Question& question) {
-  const auto [a, b] = std::pair{question.a, question.b};
-  const TimeOfImpact toi = time_of_impact(question, question.duration);
+void EventPredictor::predict_meeting(const PairQuery& query) {
+  const auto [a, b] = std::pair{query.a, query.b};
+  const TimeOfImpact toi = time_of_impact(query, query.duration);
   if (!run_.model.is_free(a) && !run_.model.is_free(b)) {
-    return;  // asked all the same where nothing is left out; nothing can come of it
+    return;  // asked only where no pair is left out; nothing can come of it
   }
   const bool field = run_.model.is_field(a) || run_.model.is_field(b);
   switch (toi.status) {
     case ToiStatus::separated:
       return;
     case ToiStatus::undecided:
-      if (toi.gap > allowed_gap(question)) {
-        return look_nearer(question, toi);
+      if (toi.gap > allowed_gap(query)) {
+        return look_nearer(query, toi);
       }
-      return push_meeting(question, toi);
+      return push_meeting(query, toi);
     case ToiStatus::impact:
-      return push_meeting(question, toi);
+      return push_meeting(query, toi);
     case ToiStatus::overlapping:
-      return field ? push(question, 0.0, Due::field_entered) : leave_overlap(question);
+      return field ? push(query, 0.0, DueKind::field_entered) : leave_overlap(query);
   }
 }
 
-/// Two solids that a computation left inside each other, by roundoff: an impact if they approach,
-/// and nothing if they part; a pair that stays would fall through, unless it can be held.
-void EventPredictor::leave_overlap(const Question& question) {
-  const auto [a, b] = std::pair{question.a, question.b};
+/// Two solids that overlap by roundoff: an impact if they approach, nothing if they part. A pair
+/// that stays would fall through each other, unless a mode of contact can hold it.
+void EventPredictor::leave_overlap(const PairQuery& query) {
+  const auto [a, b] = std::pair{query.a, query.b};
   const auto state_of = [&](BodyIndex i) {
-    const Motion motion = motion_of(i, question);
-    const double s = std::min(question.from - motion.start, motion.duration);
+    const Motion motion = motion_of(i, query);
+    const double s = std::min(query.from - motion.start, motion.duration);
     return BodyState{motion.pose(s), motion.twist(s)};
   };
   const BodyState state_a = state_of(a);
@@ -423,24 +436,24 @@ void EventPredictor::leave_overlap(const Question& question) {
   const Overlap o =
       run_.detector.overlap(run_.model.shape(a), state_a.pose, run_.model.shape(b), state_b.pose);
   if (normal_velocity({o.point, o.normal, o.gap}, state_a, state_b) < 0.0) {
-    return push(question, 0.0, Due::impact);
+    return push(query, 0.0, DueKind::impact);
   }
-  const TimeOfImpact meanwhile = without_errors(question);
+  const TimeOfImpact meanwhile = without_errors(query);
   if (meanwhile.status == ToiStatus::impact || meanwhile.status == ToiStatus::undecided) {
-    return push_meeting(question, meanwhile);
+    return push_meeting(query, meanwhile);
   }
-  // A detector that proves nothing lets them overlap by what it misses.
+  // A detector without proofs lets bodies overlap by what it misses.
   const bool deeper = meanwhile.status == ToiStatus::overlapping && run_.detector.info().proves;
-  const TimeOfImpact parting = time_of_separation(question);
+  const TimeOfImpact parting = time_of_separation(query);
   if (deeper || parting.status == ToiStatus::overlapping) {
-    return push(question, 0.0, Due::stays);
+    return push(query, 0.0, DueKind::stays);
   }
-  push(question, parting.t_hi, Due::recheck);
+  push(query, parting.t_hi, DueKind::recheck);
 }
 
-/// When they touch as their motions are told, without what these may err by: with it a pair in
-/// touch overlaps for a while, and could go deeper at another place than where it parts.
-TimeOfImpact EventPredictor::without_errors(const Question& of) {
+/// When the two touch if the error radii of their motions are left out: with these a pair in touch
+/// overlaps for a while, and could go deeper elsewhere than where it parts.
+TimeOfImpact EventPredictor::without_errors(const PairQuery& of) {
   Motion motion_a = motion_of(of.a, of);
   Motion motion_b = motion_of(of.b, of);
   motion_a.error_radius = motion_b.error_radius = 0.0;
@@ -452,14 +465,14 @@ TimeOfImpact EventPredictor::without_errors(const Question& of) {
   return toi;
 }
 
-void EventPredictor::predict_parting(const Question& question, Due due) {
-  const TimeOfImpact toi = time_of_separation(question);
+void EventPredictor::predict_parting(const PairQuery& query, DueKind kind) {
+  const TimeOfImpact toi = time_of_separation(query);
   if (toi.status != ToiStatus::overlapping) {
-    push(question, toi.t_hi, due);
+    push(query, toi.t_hi, kind);
   }
 }
 
-TimeOfImpact EventPredictor::time_of_separation(const Question& of) {
+TimeOfImpact EventPredictor::time_of_separation(const PairQuery& of) {
   if (!is_imaged(of)) {
     return counted(run_.detector.time_of_separation(motions_.moving(of.a), motions_.moving(of.b),
                                                     {of.from, of.duration},

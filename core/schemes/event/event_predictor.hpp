@@ -29,6 +29,8 @@ class EventPredictor {
   void predict(BodyIndex i, Instant t) { predict(i, t, i); }
   /// All pairs of i but that with `except`, as it is itself and not as an image.
   void predict(BodyIndex i, Instant t, BodyIndex except);
+  /// All pairs of all bodies of the island of i, which was launched at t.
+  void predict_island(BodyIndex i, Instant t);
   /// Body i, which moves as before, comes near others.
   void cross(BodyIndex i, Instant t);
   /// The earliest meeting of i was not what it seemed, or is over.
@@ -55,7 +57,7 @@ class EventPredictor {
 
  private:
   /// A pair from an instant on; what was due up to `known` has been dealt with.
-  struct Question {
+  struct PairQuery {
     BodyIndex a = 0;
     BodyIndex b = 0;
     Instant from;
@@ -82,26 +84,27 @@ class EventPredictor {
   void meet_balls(BodyIndex i, std::size_t balls, Instant known);
   [[nodiscard]] bool keeps_meeting(BodyIndex i, BodyIndex with) const;
   void ask(BodyIndex i, const Neighbour& j, Instant from, Instant known);
-  void push(const Question& of, double after, Due due, double patience = 0.0, bool decided = true);
+  void push(const PairQuery& of, double after, DueKind kind, double bracket = 0.0,
+            bool decided = true);
   /// Whether b is seen as an image of it.
-  [[nodiscard]] bool is_imaged(const Question& of) const {
+  [[nodiscard]] bool is_imaged(const PairQuery& of) const {
     return run_.model.scene().periodic && !is_zero(of.image);
   }
   void move_to(const Image& n, BallFlight& flight) const;
-  [[nodiscard]] bool stay_clear(const Question& of) const;
-  void predict_meeting(const Question& question);
-  [[nodiscard]] TimeOfImpact time_of_impact(const Question& of, double duration);
-  [[nodiscard]] Motion motion_of(BodyIndex i, const Question& of) const;
-  [[nodiscard]] double allowed_gap(const Question& of) const;
+  [[nodiscard]] bool stay_clear(const PairQuery& of) const;
+  void predict_meeting(const PairQuery& query);
+  [[nodiscard]] TimeOfImpact time_of_impact(const PairQuery& of, double duration);
+  [[nodiscard]] Motion motion_of(BodyIndex i, const PairQuery& of) const;
+  [[nodiscard]] double allowed_gap(const PairQuery& of) const;
   [[nodiscard]] double coordinates_reached(BodyIndex i) const;
-  void push_meeting(const Question& of, const TimeOfImpact& toi);
-  void look_nearer(const Question& question, TimeOfImpact toi);
-  void predict_parting(const Question& question, Due due);
-  void leave_overlap(const Question& question);
+  void push_meeting(const PairQuery& of, const TimeOfImpact& toi);
+  void look_nearer(const PairQuery& query, TimeOfImpact toi);
+  void predict_parting(const PairQuery& query, DueKind kind);
+  void leave_overlap(const PairQuery& query);
   /// What a query cost is told.
   TimeOfImpact counted(const TimeOfImpact& toi);
-  TimeOfImpact without_errors(const Question& of);
-  [[nodiscard]] TimeOfImpact time_of_separation(const Question& of);
+  TimeOfImpact without_errors(const PairQuery& of);
+  [[nodiscard]] TimeOfImpact time_of_separation(const PairQuery& of);
 
   EventRun& run_;
   const EventMotions& motions_;

@@ -12,7 +12,7 @@ inline namespace core {
 namespace {
 
 /// Who keeps a run busy: "'a' and 'b' (98 %), 'b' and 'c' (2 %)".
-std::string who(const EventRun& run, std::vector<WorkBudget::Share> shares) {
+std::string busiest(const EventRun& run, std::vector<WorkBudget::Share> shares) {
   for (WorkBudget::Share& s : shares) {
     if (run.agenda.before(s.b, s.a)) {
       std::swap(s.a, s.b);
@@ -38,7 +38,7 @@ std::string who(const EventRun& run, std::vector<WorkBudget::Share> shares) {
 void EventRun::begin_epoch(Instant t) {
   epoch_end_ = t + epoch_;
   const BodyIndex any = agenda.by_name().front();
-  agenda.push(epoch_end_, Due::epoch_end, any, any);
+  agenda.push(epoch_end_, DueKind::epoch_end, any, any);
 }
 
 void EventRun::spend(const DueEvent& event) {
@@ -49,18 +49,19 @@ void EventRun::spend(const DueEvent& event) {
       return stop(event.time,
                   fmt::format("accumulation: {} events at one instant, and time does not go on: of "
                               "{}; they stay in touch; {}",
-                              budget_.most_at_once(), who(*this, budget_.busiest()), part_them));
+                              budget_.most_at_once(), busiest(*this, budget_.busiest()),
+                              lasting_contact_advice));
     case WorkBudget::Spent::frame:
       return stop(event.time,
                   fmt::format("too many events: more than {} in one frame, most of them of {}; "
                               "allowed: shorter frames (--frame), more events (--max-events), or a "
                               "run that ends before (--duration)",
-                              budget_.most_in_frame(), who(*this, budget_.busiest())));
+                              budget_.most_in_frame(), busiest(*this, budget_.busiest())));
   }
 }
 
 void EventRun::persist(Archive& archive) {
-  archive(boxes_on, time, epoch_end_, agenda, budget_, ledger, cost);
+  archive(boxes_crossed, time, epoch_end_, agenda, budget_, ledger, cost);
 }
 
 }  // namespace core

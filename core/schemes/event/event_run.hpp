@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/schemes/event/event_agenda.hpp"
+#include "core/schemes/event/jump_watch.hpp"
 #include "core/schemes/event/work_budget.hpp"
 #include "core/schemes/shared/scheme_run.hpp"
 
@@ -13,7 +14,7 @@ namespace kairos {
 inline namespace core {
 
 /// What a person can do about bodies that stay in touch: the end of a stop's reason.
-inline constexpr std::string_view part_them =
+inline constexpr std::string_view lasting_contact_advice =
     "contact that lasts is kept where loads are constant and nothing turns, of one body that does "
     "not turn on a face that is driven, or of up to 24 that turn while they touch; allowed: "
     "bodies that start apart, a restitution of 1, another scheme, or a run that ends before "
@@ -29,6 +30,7 @@ class EventRun : public SchemeRun {
   EventRun(const Model& of, const Method& method, const SchemeOptions& asked, Recorder& to)
       : SchemeRun(of, method, asked, to),
         agenda(of),
+        jumps(watches_jumps ? of.size() : 0),
         budget_(asked.max_events, of.size(), mean_frame),
         // Not shorter than some frames, so that epochs cost nothing.
         epoch_(std::max(of.scene().duration, 64.0 * mean_frame)) {}
@@ -56,9 +58,9 @@ class EventRun : public SchemeRun {
   [[nodiscard]] Instant epoch_end() const { return epoch_end_; }
   /// Puts on the agenda what is due at t, between a and b; not if the epoch ends before: whoever
   /// asks is asked again then.
-  void push_in_epoch(Instant t, Due due, BodyIndex a, BodyIndex b) {
+  void push_in_epoch(Instant t, DueKind kind, BodyIndex a, BodyIndex b) {
     if (t < epoch_end_) {
-      agenda.push(t, due, a, b);
+      agenda.push(t, kind, a, b);
     }
   }
 
@@ -66,6 +68,7 @@ class EventRun : public SchemeRun {
   void persist(Archive& archive);
 
   Agenda agenda;
+  JumpWatch jumps;  ///< of no body unless `watches_jumps`
 
  private:
   WorkBudget budget_;

@@ -2,6 +2,7 @@
 
 #include "core/archive.hpp"
 
+#include <cassert>
 #include <utility>
 
 namespace kairos {
@@ -18,7 +19,7 @@ EventWorld::EventWorld(const Model& model, const Method& method, const SchemeOpt
       hands_(run_, motions_, predictor_, contacts_, grasps_),
       clock_(run_.options) {
   if (model.scene().periodic) {
-    run_.boxes_on.resize(model.size());
+    run_.boxes_crossed.resize(model.size());
   }
 }
 
@@ -39,17 +40,21 @@ bool EventWorld::begin() {
 
 void EventWorld::take() {
   const DueEvent event = run_.agenda.pop();
+  if constexpr (watches_jumps) {
+    run_.jumps.begin();
+  }
   take(event);
+  assert(stopped() || motions_.left_out().empty());
   if (event.own && !stopped() && !run_.agenda.is_filed(event.owner)) {
-    predictor_.renew(event.owner, event.time);  // it goes on as before
+    predictor_.renew(event.owner, event.time);  // its motion is the same
   }
 }
 
 void EventWorld::take(const DueEvent& event) {
-  if (event.due == Due::epoch_end) {
+  if (event.kind == DueKind::epoch_end) {
     return next_epoch(event.time);
   }
-  if (event.due == Due::contact_begins) {
+  if (event.kind == DueKind::contact_begins) {
     return contacts_.begin_contact(event.a, event.b, event.time);
   }
   if (event.stale) {
@@ -60,30 +65,30 @@ void EventWorld::take(const DueEvent& event) {
     return;
   }
   run_.time = event.time;
-  switch (event.due) {
-    case Due::segment_end:
+  switch (event.kind) {
+    case DueKind::segment_end:
       return end_segment(event.a, event.time);
-    case Due::support_ends:
+    case DueKind::support_ends:
       return contacts_.leave_support(event.a, event.time);
-    case Due::mode_ends:
+    case DueKind::mode_ends:
       return contacts_.settle_anew(run_.model.is_free(event.a) ? event.a : event.b, event.time);
-    case Due::stays:
+    case DueKind::stays:
       return contacts_.stay(event.a, event.b, event.time);
-    case Due::epoch_end:
-    case Due::contact_begins:
+    case DueKind::epoch_end:
+    case DueKind::contact_begins:
       return;
-    case Due::field_entered:
+    case DueKind::field_entered:
       return contacts_.cross_field(event.a, event.b, event.time, true);
-    case Due::field_left:
+    case DueKind::field_left:
       return contacts_.cross_field(event.a, event.b, event.time, false);
-    case Due::clear_of_hand:
+    case DueKind::clear_of_hand:
       return hands_.clear(event.a, event.b, event.time);
-    case Due::horizon:
+    case DueKind::crossing:
       return predictor_.cross(event.a, event.time);
-    case Due::recheck:
+    case DueKind::recheck:
       return predictor_.predict_pair(event.a, event.b, event.image, event.time);
-    case Due::impact:
-      return contacts_.impact(event.a, event.b, event.time, event.patience, event.decided);
+    case DueKind::impact:
+      return contacts_.impact(event.a, event.b, event.time, event.bracket, event.decided);
   }
 }
 
@@ -91,8 +96,8 @@ void EventWorld::take(const DueEvent& event) {
 void EventWorld::next_epoch(Instant t) {
   run_.begin_epoch(t);
   for (const BodyIndex i : run_.agenda.by_name()) {
-    // How long a ball is supported was looked at for one epoch only; where the surface moves, its
-    // next motion tells.
+    // The end of a support was looked for in one epoch only. A surface that is driven tells by its
+    // next motion.
     const auto& support = motions_.support(i);
     if (support && run_.model.mobility(support->surface) != Mobility::driven) {
       motions_.open(i, t);
@@ -100,7 +105,7 @@ void EventWorld::next_epoch(Instant t) {
     }
   }
   for (const BodyIndex i : contacts_.modes().moving()) {
-    if (motions_.start_of(i) < t) {  // its group has not been looked at
+    if (motions_.start_of(i) < t) {  // its group has not been settled yet
       contacts_.settle_anew(i, t);
     }
   }
@@ -114,9 +119,7 @@ void EventWorld::end_segment(BodyIndex i, Instant t) {
     hands_.follow(i, t);
     return predictor_.predict(i, t);
   }
-  for (const BodyIndex k : motions_.island(i)) {
-    predictor_.predict(k, t);
-  }
+  predictor_.predict_island(i, t);
 }
 
 bool EventWorld::draw() {
@@ -131,7 +134,7 @@ bool EventWorld::draw() {
   return !stopped() && open_frame();
 }
 
-/// The frame that follows the one drawn last; false where the run ends.
+/// Begins the frame after the one that was drawn last; false where the run ends.
 bool EventWorld::open_frame() {
   run_.begin_frame();
   clock_.look(run_.time);
@@ -146,7 +149,7 @@ RunResult EventWorld::result() && {
   return std::move(run_).result(std::move(motions_).last_drawn());
 }
 
-/// What a run needs to go on, between a frame that was drawn and the next.
+/// Saves or restores what a run needs to go on, between two frames.
 void EventWorld::persist(Archive& archive) {
   archive(run_, clock_, grasps_, graph_, motions_, predictor_, contacts_);
   run_.recorder.persist(archive);

@@ -9,10 +9,11 @@ inline namespace core {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Speeds that have shrunk by so much have crossed all that doubles resolve, and half as much
+/// Speeds that have shrunk by this factor are below what doubles resolve, by half as many digits
 /// again.
 constexpr double vanished = 1e-24;
-/// Impacts of each contact in a row that take no time: elastic ones hand on what they have and end.
+/// How many impacts in a row, for each contact, may take no time: elastic ones hand on their
+/// momentum and end.
 constexpr std::int64_t timeless = 64;
 
 /// When the gap g + u t + a t^2 / 2 closes, s; infinite if it does not.
@@ -38,7 +39,7 @@ void advance(ImpactCluster& cluster, double dt) {
   }
 }
 
-/// Newton's law at contact j, which the rates of the others feel.
+/// Applies Newton's law at contact j, which changes the rates of the others.
 void strike(ImpactCluster& cluster, std::size_t j) {
   const std::size_t n = cluster.contacts.size();
   ClusterContact& hit = cluster.contacts[j];
@@ -57,7 +58,7 @@ ClusterFate follow(ImpactCluster cluster, double horizon, std::int64_t most_impa
   const auto n = static_cast<std::int64_t>(cluster.contacts.size());
   ClusterFate fate;
   double fastest = 0.0;      // impact so far
-  std::int64_t weak = 0;     // impacts in a row that are nothing beside it
+  std::int64_t weak = 0;     // impacts in a row that are negligible beside it
   std::int64_t at_once = 0;  // impacts in a row that take no time
   for (; fate.impacts < most_impacts; ++fate.impacts) {
     std::size_t next = 0;

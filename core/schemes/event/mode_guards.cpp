@@ -22,7 +22,7 @@ struct Guards {
 
   [[nodiscard]] bool free(std::size_t k) const { return group.bodies[k].inverse_mass > 0.0; }
 
-  /// Whether all that is free moves as one, on half-spaces or not at all: loads cannot shift.
+  /// Whether all free bodies move as one, on half-spaces or not at all: then loads cannot shift.
   [[nodiscard]] bool rigid() const {
     std::optional<std::size_t> first;
     for (std::size_t k = 0; k < bodies.size(); ++k) {
@@ -49,8 +49,8 @@ struct Guards {
     return true;
   }
 
-  /// Places of the free bodies that hang on patch p on the side of `from`; nothing if they are held
-  /// elsewhere too.
+  /// Places of the free bodies that depend on patch p alone, on the side of `from`; nothing if they
+  /// are held elsewhere too.
   [[nodiscard]] std::vector<std::size_t> hanging(std::size_t p, std::size_t from) const {
     std::vector<std::size_t> side{from};
     for (std::size_t k = 0; k < side.size(); ++k) {
@@ -144,7 +144,8 @@ struct Guards {
       return "a body that is carried by several others slides";
     }
     for (const std::size_t k : {patch.a, patch.b}) {
-      if (mode.velocities[k].angular.isZero(0.0)) {  // its own middle carries what spins
+      if (mode.velocities[k].angular.isZero(
+              0.0)) {  // a body that spins is carried under its middle
         until = std::min(until, rim(k, *point, n));
       }
     }

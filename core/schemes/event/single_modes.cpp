@@ -1,5 +1,5 @@
-// What `EventModes` does with one body on one surface whose motion is no parabola: the surface is
-// driven, or what slides turns.
+// `EventModes` for one body on one surface whose motion is no parabola: the surface is driven, or
+// the direction of sliding turns.
 #include "core/contacts/centre_of_pressure.hpp"
 #include "core/contacts/curved_slip.hpp"
 #include "core/schemes/event/driven_mode.hpp"
@@ -12,7 +12,7 @@
 
 namespace kairos {
 inline namespace core {
-/// One block on one face that is driven.
+/// Settles one block on one driven face.
 bool EventModes::settle_driven(Gathered found, Instant t, const Adopt& adopt) {
   const BodyIndex surface = *found.driven;
   const bool alone = found.bodies.size() == 2 && found.pairs.size() == 1;
@@ -32,8 +32,8 @@ bool EventModes::settle_driven(Gathered found, Instant t, const Adopt& adopt) {
   }
   const Motion whole = motions_.of(surface);
   const Motion under = whole.shifted(std::min(t - whole.start, whole.duration));
-  // The motion of the surface comes in pieces, each cut short at its order: what they leave out
-  // would add up to penetration.
+  // The motion of the surface comes in pieces, each truncated at its order: their errors would add
+  // up to penetration.
   double gap = 0.0;
   for (std::size_t p = 0; p < patch.manifold.size; ++p) {
     gap = std::min(gap, patch.manifold.points[p].gap);
@@ -62,7 +62,7 @@ bool EventModes::settle_driven(Gathered found, Instant t, const Adopt& adopt) {
     commit(found, mode, t, adopt);
     return true;
   }
-  // The forces act where the line through its middle along them meets the face.
+  // The forces act where the line through the middle of the block, along their sum, meets the face.
   const ContactManifold& m = patch.manifold;
   const Vector3& middle = found.states[k].pose.position;
   const Vector3 down = m.normal * m.normal.dot(m.points[0].position - middle);
@@ -91,14 +91,15 @@ bool EventModes::settle_driven(Gathered found, Instant t, const Adopt& adopt) {
   mode.force = {(first ? -mass : mass) * driven.pushes};
   mode.slip_ends = {driven.until};
   run_.account.moved(body, position - before);
-  Alone alone_there{driven.motion, false, {}};
+  GivenMotion alone_there{driven.motion, false, {}};
   alone_there.motion.start = t;
   commit(found, mode, t, adopt, &alone_there);
-  run_.push_in_epoch(t + driven.until, Due::mode_ends, found.pairs[0].first, found.pairs[0].second);
+  run_.push_in_epoch(t + driven.until, DueKind::mode_ends, found.pairs[0].first,
+                     found.pairs[0].second);
   return true;
 }
 
-/// One body that slides on a face which is fixed, not on a line: its direction is a series.
+/// Settles one body that slides on a fixed face along a curve: its direction is a series.
 bool EventModes::settle_curved(const Gathered& found, Instant t, const Adopt& adopt) {
   const bool pair = found.bodies.size() == 2 && found.pairs.size() == 1;
   const std::size_t k = pair && run_.model.is_free(found.bodies[0]) ? 0 : 1;
@@ -121,7 +122,8 @@ bool EventModes::settle_curved(const Gathered& found, Instant t, const Adopt& ad
   const double braked = patch->friction * pressing;
   Twist start = found.states[k].twist;
   start.linear -= n * n.dot(start.linear);
-  // How much faster than its middle the point of a ball changes its velocity.
+  // A ball turns, too: its point of contact is accelerated 1 + r * turned times as much as its
+  // middle.
   const double r = round ? found.group.radius[k] : 0.0;
   const double turned = r * body.inverse_inertia(0, 0) / body.inverse_mass;
   Vector3 slip = start.linear + start.angular.cross(-r * n);
@@ -129,7 +131,7 @@ bool EventModes::settle_curved(const Gathered& found, Instant t, const Adopt& ad
   const CurvedSlip curve =
       curved_slip(slip, load + pressing * n, braked * (1.0 + r * turned), run_.epoch_end() - t);
 
-  Alone alone{
+  GivenMotion alone{
       Motion::ballistic(t, curve.duration, found.states[k].pose, start, Vector3::Zero()), true, {}};
   const int order = curve.direction.degree();
   Motion& motion = alone.motion;
@@ -154,7 +156,7 @@ bool EventModes::settle_curved(const Gathered& found, Instant t, const Adopt& ad
   }
   motion.position[1] = start.linear;
 
-  // Where the forces act: under its middle, along them.
+  // The point where the forces act: along their sum from the middle down to the face.
   Motion point = motion;
   const BodyIndex surface = found.bodies[1 - k];
   double until = curve.duration;
@@ -186,7 +188,7 @@ bool EventModes::settle_curved(const Gathered& found, Instant t, const Adopt& ad
   mode.slip_ends = {until};
   commit(found, mode, t, adopt, &alone);
   why_not_.clear();
-  run_.push_in_epoch(t + until, Due::mode_ends, found.pairs[0].first, found.pairs[0].second);
+  run_.push_in_epoch(t + until, DueKind::mode_ends, found.pairs[0].first, found.pairs[0].second);
   return true;
 }
 

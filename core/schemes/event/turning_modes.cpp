@@ -44,16 +44,16 @@ bool EventModes::presses(const Gathered& found, const Turning& turning, const Bo
 }
 
 bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, const Adopt& adopt,
-                                const Wish& asked) {
+                                const SettleOptions& asked) {
   if (!stepper_) {
     return false;
   }
   const std::string flat = why_not_;
-  Wish wish = asked;
-  wish.turning = true;
+  SettleOptions options = asked;
+  options.turning = true;
   Gathered found;
   Turning turning;
-  if (!make_room(seeds, t, wish, found, turning)) {
+  if (!make_room(seeds, t, options, found, turning)) {
     return false;
   }
   why_not_ = add_rims(found, turning);
@@ -114,11 +114,11 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
 
 /// Gathers what touches, with gaps that can be held. Where that brings one nearer to what passes
 /// by, this makes way, too.
-bool EventModes::make_room(std::span<const BodyIndex> seeds, Instant t, Wish wish, Gathered& found,
+bool EventModes::make_room(std::span<const BodyIndex> seeds, Instant t, SettleOptions options, Gathered& found,
                            Turning& turning) {
   for (const bool near : {false, true}) {
-    wish.near = near;
-    found = gather(seeds, t, wish);
+    options.near = near;
+    found = gather(seeds, t, options);
     turning = {};
     why_not_ = found.refusal.empty() ? why_not_turn(found, t) : found.refusal;
     if (why_not_.empty()) {
@@ -434,7 +434,7 @@ void EventModes::carry_on(const Gathered& found, const Turning& turning, Instant
   const bool strikes = turning.step.end == TurningEnd::strike;
   if (strikes) {
     const auto& [a, b] = found.pairs[turning.step.pair];
-    run_.agenda.push(end, Due::impact, a, b, 0.0, true);
+    run_.agenda.push(end, DueKind::impact, a, b, 0.0, true);
   }
   end_together(found, mode, end, strikes ? &found.pairs[turning.step.pair] : nullptr);
 }
@@ -455,7 +455,7 @@ void EventModes::end_together(const Gathered& found, const FlatMode& mode, Insta
     const auto& [a, b] = found.pairs[p];
     const BodyIndex free = run_.model.is_free(a) ? a : b;
     if (mode.kept[p] != 0 && std::find(told.begin(), told.end(), free) == told.end()) {
-      run_.agenda.push(end, Due::mode_ends, a, b);
+      run_.agenda.push(end, DueKind::mode_ends, a, b);
       tell(a, b);
     }
   }

@@ -24,7 +24,7 @@ FirstContact first_contact(FrameWorld& world, double part) {
       continue;
     }
     const TimeOfImpact toi = world.time_of_impact(a, b, part);
-    // A pair that touches at the end only is handled at the end of the substep.
+    // A pair that touches only at the end of the substep is handled there.
     const double time = toi.status == ToiStatus::separated ? part : toi.t_lo;
     if (!first.found || time < first.time) {
       first = {true, time, a, b};
@@ -87,8 +87,8 @@ class Bisected final : public Scheme {
           world.stop("accumulation: contacts follow each other without time passing");
           return false;
         }
-        // In contact when the substep began: no moment to go back to, handled where it is, and
-        // every second time the substep is let pass, as `substepped` would.
+        // A pair in contact when the substep began has no moment to go back to. It is handled where
+        // it is; every second time the whole substep is taken, as in `substepped`.
         part = contact.time > 0.0 ? contact.time : (stuck % 2 == 0 ? part : 0.0);
       }
       if (part > 0.0) {

@@ -45,8 +45,9 @@ void FrameContacts::book(const ImpactEnergy& energy, BodyIndex a, BodyIndex b) {
   }
 }
 
-/// What the impact law would have taken at the moment of contact, found by bisection on the motions
-/// of the last step. A pair that overlapped throughout that step has no such moment: 0 late.
+/// The restitution loss that the impact law would have caused at the moment of contact, which is
+/// found by bisection on the motions of the last step. A pair that overlapped throughout has no
+/// such moment: 0 late.
 double FrameContacts::loss_at_contact(BodyIndex a, BodyIndex b, double loss_when_handled) const {
   if (run_.last_step == 0.0) {
     return loss_when_handled;

@@ -30,7 +30,7 @@ void FrameHands::follow() {
   }
 }
 
-/// What was let go of has contacts from now on: not inside a solid.
+/// A released body has contacts from now on, so it must not be inside a solid.
 void FrameHands::check_free(const Grip& grip) {
   const auto pose = [this](BodyIndex i) { return run_.bodies[i].pose; };
   if (std::string why = why_not_released(run_, grasps_, grip, run_.time, pose); !why.empty()) {
@@ -38,7 +38,7 @@ void FrameHands::check_free(const Grip& grip) {
   }
 }
 
-/// The held body takes the hand's place and the given share of its velocity.
+/// Puts the held body where the hand is, with the given share of the hand's velocity.
 void FrameHands::carry(const Grip& grip, double share) {
   BodyState state = run_.bodies[grip.held];
   state.pose.position = run_.bodies[grip.hand].pose.position;

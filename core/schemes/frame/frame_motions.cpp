@@ -56,7 +56,7 @@ bool FrameMotions::step(Mover& mover, double& done, double until) {
                         : "integrator: " + std::string(result.reason));
     return false;
   }
-  // What rounding leaves of the time is no step of its own: a solver may never get through it.
+  // Time that only rounding leaves over is no step of its own: a solver may never get through it.
   constexpr double roundoff = 4.0 * std::numeric_limits<double>::epsilon();
   done = until - reached > roundoff * until ? reached : until;
   mover.last_step = result.advanced;
@@ -98,7 +98,7 @@ void FrameMotions::end_step(double h) {
   }
 }
 
-/// A driven body takes its place; collisions see the velocity that its entity estimates (13.8).
+/// Moves a driven body to its place. Collisions see the velocity that its entity estimates (13.8).
 void FrameMotions::settle(BodyIndex i, double interval) {
   const Motion motion = run_.model.body(i).drive->motion(run_.time, run_.mean_frame);
   BodyState truth{motion.pose(0.0), motion.twist(0.0)};
@@ -171,7 +171,7 @@ void FrameMotions::fly(Mover& mover, double from, double to) {
   begin_step(mover, run_.time + from);
   for (double done = from; done < to;) {
     if (!step(mover, done, to)) {
-      // The run is stopped; until its scheme gets there, bodies are where they came to.
+      // The run is stopped. Until the scheme notices, bodies stay where they came to.
       for (const BodyIndex i : mover.island.bodies) {
         const Pose pose = paths_[i].empty() ? run_.bodies[i].pose
                                             : paths_[i].back().pose(paths_[i].back().duration);
@@ -190,7 +190,7 @@ void FrameMotions::fly(Mover& mover, double from, double to) {
 
 const Motion& FrameMotions::path_motion(BodyIndex i, double s) const {
   const std::vector<Motion>& path = paths_[i];
-  // A stiff force makes many motions of one frame: they are not searched one by one.
+  // A stiff force makes many motions in one frame, too many to search one by one.
   const auto after = std::partition_point(path.begin() + 1, path.end(), [&](const Motion& motion) {
     return motion.start - run_.time <= s;
   });
@@ -242,7 +242,7 @@ void FrameMotions::cut(BodyIndex i, double s) {
 
 void FrameMotions::fly_on(BodyIndex i, double s, const State& meeting) {
   Mover& mover = mover_of(i);
-  assert(mover.booked_until >= s);  // else the jump would be taken for work along the way
+  assert(mover.booked_until >= s);  // or the jump would be booked as work along the path
   mover.gather(meeting);
   mover.booked = mover.states;
   mover.booked_until = s;
@@ -280,15 +280,15 @@ void FrameMotions::book_step(Mover& mover, const std::vector<BodyState>& from,
   }
 }
 
-/// Of the stepper's last step, J; 0 where it cannot be replayed.
+/// Roundoff of the stepper's last step, J; 0 if it cannot be replayed.
 double FrameMotions::roundoff_of(Mover& mover, const std::vector<BodyState>& from,
                                  const std::vector<BodyState>& to, double h) {
   return mover.roundoff(h, from, [&](std::size_t k) -> const BodyState& { return to[k]; })
       .value_or(0.0);
 }
 
-/// What put the states back at the end of the motion that a leg of the proposal is on, if the leg
-/// goes on until there (but for roundoff of its end).
+/// The projection at the end of the motion that a leg of the proposal is on, if the leg lasts until
+/// there (but for roundoff of its end).
 JointProjection FrameMotions::projection_until(const Mover& mover, double from, double end) {
   for (const auto& [ends, projection] : mover.projections) {
     if (ends > from) {
@@ -298,7 +298,7 @@ JointProjection FrameMotions::projection_until(const Mover& mover, double from, 
   return {};
 }
 
-/// The ledger follows an island along its path up to `until` of the proposal.
+/// Books an island along its path up to `until` of the proposal.
 void FrameMotions::book_path(Mover& mover, double until) {
   const BodyIndex first = mover.island.bodies.front();
   std::vector<BodyState>& to = mover.reached;
@@ -307,7 +307,7 @@ void FrameMotions::book_path(Mover& mover, double until) {
     const double from = mover.booked_until;
     double end = from + common_stretch(first, first, from, until);
     if (!(end > from)) {
-      end = until;  // what rounding left between the last motion and `until`
+      end = until;  // rounding left a gap between the last motion and `until`
     }
     assert(end > from && end <= until);
     const bool at_end = end >= proposed_;

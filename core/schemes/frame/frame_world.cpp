@@ -159,13 +159,13 @@ bool FrameWorld::overlap_at(BodyIndex a, BodyIndex b, double s) {
                                 run_.model.shape(b), motions_.on_path(b, s).pose);
 }
 
-/// What a run needs to go on, between a frame that was drawn and the next.
+/// Saves or restores what a run needs to go on, between two frames.
 void FrameWorld::persist(Archive& archive) {
   archive(run_, clock_, motions_, contacts_, grasps_);
   run_.recorder.persist(archive);
 }
 
-/// Neighbours on a joint, which do not meet as solids.
+/// Whether the two are neighbours on a joint: these do not meet as solids.
 static bool held_by_a_joint(const Model& model, BodyIndex a, BodyIndex b) {
   return !model.scene().joints.empty() && !model.interacts(a, b) &&
          (model.is_free(a) || model.is_free(b)) && !model.is_field(a) && !model.is_field(b);

@@ -7,7 +7,7 @@ namespace kairos {
 inline namespace core {
 namespace {
 
-/// When within the frame the pair meets; negative: it does not.
+/// The time within the frame at which the pair meets; negative if it does not.
 double contact_within(FrameWorld& world, BodyIndex a, BodyIndex b) {
   if (!world.swept_overlap(a, b)) {
     return -1.0;

@@ -29,14 +29,15 @@ double kinetic_gain(double m, const Vector3& v0, const Vector3& v1) {
   return 0.5 * m * (v1 - v0).dot(v1 + v0);
 }
 
-/// What rotation gained, by principal axes: a body that tumbles moves energy from one to another.
+/// Energy that rotation gained, by principal axis: a body that tumbles moves it from one to
+/// another.
 Vector3 spin_gains(const BodyInertia& inertia, const BodyState& from, const BodyState& to) {
   const Vector3 w0 = principal_rates(inertia, from);
   const Vector3 w1 = principal_rates(inertia, to);
   return 0.5 * inertia.principal.cwiseProduct((w1 - w0).cwiseProduct(w1 + w0));
 }
 
-/// Energy that a body holds, after a change of its velocities, in those that changed, J.
+/// Energy in those velocity components of a body that changed, after the change, J.
 double renewed(const BodyInertia& inertia, const BodyState& from, const BodyState& to) {
   double energy = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -142,7 +143,7 @@ double EnergyAccount::work_along(const Force& force, std::span<const Motion> mot
     const Instant t = start + node.abscissa * duration;
     act(forces, motions, t);
     for (std::size_t k = 0; k < motions.size(); ++k) {
-      // The path's own velocity, which a dense output may tell apart from `twist`.
+      // The derivative of the path, which in a dense output may differ from `twist`.
       const Vector3 path_velocity = motions[k].position.derivative(t - motions[k].start);
       work += node.weight * duration *
               (wrenches_[k].force.dot(path_velocity) +
@@ -267,7 +268,7 @@ double EnergyAccount::kinetic(std::span<const BodyState> bodies) const {
 double EnergyAccount::potential(Instant t, std::span<const BodyState> bodies) {
   CompensatedSum sum;
   for (const BodyIndex i : model_.free_by_name()) {
-    // Of bodies above and below the origin the potentials cancel; their rounding would not.
+    // The potentials of bodies above and below the origin cancel; their roundings would not.
     const Vector3& force = model_.gravity_force(i);
     for (int axis = 0; axis < 3; ++axis) {
       sum.add_product(-force[axis], bodies[i].pose.position[axis]);

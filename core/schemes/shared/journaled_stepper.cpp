@@ -67,7 +67,7 @@ class JournaledStepper final : public Stepper {
  private:
   enum class Call : std::uint8_t { start, restart, step };
   friend constexpr Call last_of(Call) { return Call::step; }
-  /// States and forces are noted where they are not what the last call left.
+  /// States and forces are noted only if they differ from those after the last call.
   struct Entry {
     Call call = Call::step;
     Instant t{};

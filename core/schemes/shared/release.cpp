@@ -9,7 +9,7 @@ namespace kairos {
 inline namespace core {
 namespace {
 
-/// What roundoff can account for, m; a half-space has no extent of its own.
+/// Overlap that roundoff can account for, m; a half-space has no extent of its own.
 double touching(const Shape& shape_a, const Pose& a, const Shape& shape_b, const Pose& b) {
   double scale = a.position.norm() + b.position.norm();
   for (const double radius : {bounding_radius(shape_a), bounding_radius(shape_b)}) {

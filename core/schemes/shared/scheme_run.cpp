@@ -61,8 +61,8 @@ BodyInertia SchemeRun::flat_inertia(BodyIndex i) const {
 
 void SchemeRun::note(const Event& event) {
   ++cost.events;
-  if (!boxes_on.empty()) {
-    tell(where_told(event));
+  if (!boxes_crossed.empty()) {
+    tell(as_recorded(event));
   } else {
     tell(event);
   }
@@ -76,12 +76,12 @@ void SchemeRun::tell(const Event& event) {
   }
 }
 
-Event SchemeRun::where_told(Event event) const {
-  event.contact.point += way_told(event.a);
-  event.before_a.pose.position += way_told(event.a);
-  event.after_a.pose.position += way_told(event.a);
-  event.before_b.pose.position += way_told(event.b);
-  event.after_b.pose.position += way_told(event.b);
+Event SchemeRun::as_recorded(Event event) const {
+  event.contact.point += recorded_offset(event.a);
+  event.before_a.pose.position += recorded_offset(event.a);
+  event.after_a.pose.position += recorded_offset(event.a);
+  event.before_b.pose.position += recorded_offset(event.b);
+  event.after_b.pose.position += recorded_offset(event.b);
   return event;
 }
 

@@ -39,8 +39,9 @@ class SchemeRun {
   [[nodiscard]] BodyInertia flat_inertia(BodyIndex i) const;
   /// Offset from where a body is computed to where it is recorded, m: in a periodic box it is
   /// computed as the image that meets others, and recorded along its own path without jumps.
-  [[nodiscard]] Vector3 way_told(BodyIndex i) const {
-    return boxes_on.empty() ? Vector3(Vector3::Zero()) : model.scene().periodic->shift(boxes_on[i]);
+  [[nodiscard]] Vector3 recorded_offset(BodyIndex i) const {
+    return boxes_crossed.empty() ? Vector3(Vector3::Zero())
+                                 : model.scene().periodic->shift(boxes_crossed[i]);
   }
   /// An event at which no state jumps.
   void note(const Event& event);
@@ -71,11 +72,11 @@ class SchemeRun {
   EnergyLedger ledger;
   EnergyAccount account;  ///< keeps the ledger
   Cost cost;
-  std::vector<Image> boxes_on;  ///< by body; empty where no box is periodic
+  std::vector<Image> boxes_crossed;  ///< by body; empty where no box is periodic
 
  private:
   void tell(const Event& event);
-  [[nodiscard]] Event where_told(Event event) const;
+  [[nodiscard]] Event as_recorded(Event event) const;
 
   std::string why_stopped_;
   bool holds_events_ = false;

@@ -92,8 +92,8 @@ std::optional<Support> find_support(const Model& model, BodyIndex ball, const Ve
   if (axis < 0) {
     return std::nullopt;
   }
-  // The arithmetic of `face_exit_time`: a ball that just left at an edge is not found on the face
-  // again by the rounding of another.
+  // This is the arithmetic of `face_exit_time`, so that a ball which has just left at an edge is
+  // not found on the face again by a different rounding.
   const Vector3 from_middle = centre - pose.position;
   for (int k = 0; k < 3; ++k) {
     const Vector3 along_k = pose.orientation * Vector3(Vector3::Unit(k));

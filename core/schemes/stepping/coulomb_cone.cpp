@@ -88,10 +88,10 @@ Vector3 coulomb_impulse(const Matrix3& W, const Vector3& q, double mu) {
     return stick;
   }
   if (std::isinf(mu)) {
-    return Vector3::Zero();  // sticking would pull: what is rough comes off
+    return Vector3::Zero();  // sticking would pull: without a bound of friction the contact opens
   }
   const Sliding sliding(W, q, mu);
-  // Sliding is mostly near the direction that sticking has to hold against: look there first.
+  // The direction of sliding is mostly near that which sticking would have to hold: try it first.
   const double guess = arc_tangent(-stick[2], -stick[1]);
   double reach = 0.0;
   for (double step = 1e-3; reach < M_PI; step *= 2.0) {

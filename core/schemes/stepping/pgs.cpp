@@ -40,7 +40,7 @@ void solve(StepWorld& world, const TimeSteppingOptions& options) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   for (std::int64_t sweep = 0; sweep < sweeps; ++sweep) {
     for (StepContact& c : world.contacts()) {
-      // 0 of an infinite coefficient is 0: what does not press does not rub.
+      // An infinite coefficient times 0 is 0 here: a contact that does not press has no friction.
       const double most = c.impulse[0] > 0.0 && c.friction > 0.0 ? c.friction * c.impulse[0] : 0.0;
       relax(world, c, 1, 0.0, -most, most);
       relax(world, c, 2, 0.0, -most, most);

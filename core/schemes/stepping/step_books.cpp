@@ -68,7 +68,7 @@ void StepWorld::book_island(std::size_t k) {
   }
 }
 
-/// From where body i was to where it is: straight, at a constant rate of turning.
+/// The motion of body i in this step: straight, at a constant rate of turning.
 Motion StepWorld::way(BodyIndex i) const {
   const BodyState& from = start_[i];
   const BodyState& to = bodies_[i];

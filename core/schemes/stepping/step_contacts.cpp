@@ -93,9 +93,9 @@ void StepWorld::add_contacts(BodyIndex a, BodyIndex b, std::span<const Pose> pos
   }
 }
 
-/// Gives each contact the impulse of one of the last step, which no other gets: the nearest on the
-/// surface of a, within a tenth of the smaller body; a single point, which may roll, is the single
-/// point that was.
+/// Gives each contact the impulse of one contact of the last step, and each of those to one contact
+/// only: the nearest on the surface of a, within a tenth of the smaller body. A single point, which
+/// may roll, continues the single point of the last step.
 void StepWorld::recognise() {
   const auto less = [](const StepContact& x, const StepContact& y) {
     return std::tie(x.a, x.b) < std::tie(y.a, y.b);

@@ -46,7 +46,7 @@ void StepFields::act(SchemeRun& run, const State& bodies, std::vector<Vector3>& 
   }
 }
 
-/// Whether it is new there.
+/// Notes that the body is in the field; returns whether it was not before.
 bool StepFields::note(BodyIndex field, BodyIndex body) {
   for (Inside& inside : inside_) {
     if (inside.field == field && inside.body == body) {

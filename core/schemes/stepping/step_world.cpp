@@ -81,7 +81,7 @@ RunResult StepWorld::result() && { return std::move(run_).result(std::move(bodie
 
 // --- Forces and motion -------------------------------------------------------------------------
 
-/// What is driven has for the whole step the velocity that takes it to where its drive says.
+/// Gives driven bodies, for the whole step, the velocity that takes them to where their drive says.
 void StepWorld::drive() {
   for (BodyIndex i = 0; i < bodies_.size(); ++i) {
     const Body& body = run_.model.body(i);

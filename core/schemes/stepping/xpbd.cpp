@@ -24,7 +24,7 @@ class Solver {
  public:
   Solver(StepWorld& world, const TimeSteppingOptions& options) : world_(world), options_(options) {}
 
-  /// Of the contacts that were found where bodies are now, moved without them.
+  /// Prepares the contacts, which were found where bodies are now that they moved without contacts.
   void prepare() {
     projections_.clear();
     for (StepContact& c : world_.contacts()) {
@@ -46,7 +46,7 @@ class Solver {
     world_.count_solves(projections_.size());
   }
 
-  /// Velocities are what positions changed by in h.
+  /// Derives velocities from the changes of positions in h.
   void derive_velocities() {
     const double h = world_.h();
     for (const BodyIndex i : world_.model().free_by_name()) {
