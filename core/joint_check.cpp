@@ -67,9 +67,10 @@ class JointCheck {
     for (const JointSide* side : {&joint_.a, &joint_.b}) {
       if (side->body && body(*side)->drive != nullptr) {
         need(body(*side)->drive->smooth(), "bodies",
-             fmt::format("the velocity of \"{}\" jumps ({}), and what hangs on it would be torn "
-                         "along; allowed: a drive without jumps, such as a sinusoid",
-                         body(*side)->name, body(*side)->drive->description()));
+             fmt::format(
+                 "the velocity of \"{}\" jumps ({}), and a body that hangs on it would be torn "
+                 "along; allowed: a drive without jumps, such as a sinusoid",
+                 body(*side)->name, body(*side)->drive->description()));
       }
     }
   }

@@ -100,13 +100,13 @@ class BodyCheck {
   }
 
   void check_hand() const {
-    need(body_.drive->has_gestures(), "drive", "tells no gestures");
+    need(body_.drive->has_gestures(), "drive", "has no gestures");
     const auto held = std::find_if(scene_.bodies.begin(), scene_.bodies.end(),
                                    [this](const Body& b) { return b.name == body_.holds; });
     need(held != scene_.bodies.end(), "holds",
          fmt::format("the scene has no \"{}\" to hold", body_.holds));
     need(held->entity->mobility() == Mobility::free, "holds",
-         fmt::format("\"{}\" does not move freely; a hand holds what does", body_.holds));
+         fmt::format("\"{}\" does not move freely; a hand holds only bodies that do", body_.holds));
     const auto others = std::count_if(scene_.bodies.begin(), scene_.bodies.end(),
                                       [this](const Body& b) { return b.holds == body_.holds; });
     need(others == 1, "holds",

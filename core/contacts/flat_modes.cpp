@@ -109,7 +109,7 @@ class Attempt {
     for (std::size_t i = 0; i < group_.bodies.size(); ++i) {
       Vector3& turning = mode_.accelerations[i].angular;
       if (moves(group_.bodies[i]) && turning.norm() * group_.radius[i] > solve_roundoff * load_) {
-        return refuse("a body begins to turn: it tips, or what supports it is beside its centre");
+        return refuse("a body begins to turn: it tips, or its support is beside its centre");
       }
       turning.setZero();
     }

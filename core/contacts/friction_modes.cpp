@@ -50,7 +50,7 @@ class Attempt {
         take(*found);
       } else if (mode_.refusal.empty()) {
         refuse(
-            "a body begins to turn (it tips, or what supports it is beside its centre), or no "
+            "a body begins to turn (it tips, or its support is beside its centre), or no "
             "contact forces were found that could be verified");
       }
     }

@@ -166,7 +166,7 @@ void read_hand(const TableReader& table, Body& body) {
   }
   body.holds = table.need("holds", "the name of the body that the closed fist holds").text();
   if (!body.drive->has_gestures()) {
-    table.fail("drive", "tells no gestures; needed: a track with the column gesture");
+    table.fail("drive", "has no gestures; needed: a track with the column gesture");
   }
 }
 

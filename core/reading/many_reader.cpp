@@ -48,7 +48,7 @@ void refuse_unknown_keys(const TableReader& table) {
 Body read_template(const Item& item, const TableReader& table, const BodyDefaults& defaults) {
   for (const std::string_view key : {"position", "drive", "holds", "normal"}) {
     if (table.has(key)) {
-      table.fail(key, "is of one body; many lie where `region` says, and nobody moves them");
+      table.fail(key, "is of one body; many bodies lie in `region`, and nothing drives them");
     }
   }
   Table one = *item.value().table();
@@ -62,12 +62,13 @@ Body read_template(const Item& item, const TableReader& table, const BodyDefault
   const Value value{one, item.value().file, item.value().line};
   Body body = read_body(Item(value, item.path()), defaults);
   if (std::holds_alternative<HalfSpace>(body.shape)) {
-    table.fail("shape", "a half-space fills half the world; allowed: what has an end");
+    table.fail("shape", "a half-space fills half the world; allowed: shapes of finite size");
   }
   if (body.entity->mobility() == Mobility::driven) {
-    table.fail("entity", fmt::format("a {} needs a drive of its own; allowed: what moves freely or "
-                                     "not at all",
-                                     body.entity->kind()));
+    table.fail("entity",
+               fmt::format("a {} needs a drive of its own; allowed: entities that move freely "
+                           "or not at all",
+                           body.entity->kind()));
   }
   return body;
 }

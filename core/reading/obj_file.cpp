@@ -72,7 +72,7 @@ void parse_obj(std::string_view text, const std::string& path, MeshBuilder& buil
       builder.face(corners, lines.line());
     } else if (std::find(skipped.begin(), skipped.end(), what) == skipped.end()) {
       lines.fail(
-          fmt::format("\"{}\" is not known; allowed: v and f, and what is skipped (vt, vn, "
+          fmt::format("\"{}\" is not known; allowed: v and f, and those skipped (vt, vn, "
                       "g, o, s, usemtl, mtllib, l, p and the like); curved surfaces are not",
                       what));
     } else if (lines.words().back() == "\\") {

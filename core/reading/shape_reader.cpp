@@ -53,7 +53,7 @@ const ShapeKind& shape_kind(const TableReader& table) {
   }
   if (table.has("radius") == table.has("half_extents")) {
     table.fail("shape", table.has("radius")
-                            ? "cannot be told: both radius and half_extents are given"
+                            ? "is ambiguous: both radius and half_extents are given"
                             : "is missing; needed: shape, or radius (a sphere), or half_extents "
                               "(a box)");
   }

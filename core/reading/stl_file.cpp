@@ -103,7 +103,7 @@ class FacetLines {
     const bool any_length = same_word("solid", keyword);
     if (!is(keyword) || (!second.empty() && !is(second, 1)) ||
         (!any_length && lines_.words().size() != words)) {
-      lines_.fail(fmt::format("\"{}\" is not what comes here; needed: {}{}{}{}",
+      lines_.fail(fmt::format("\"{}\" is not expected here; needed: {}{}{}{}",
                               lines_.words().front(), keyword, second.empty() ? "" : " ", second,
                               numbers == 3 ? " x y z" : ""));
     }

@@ -120,17 +120,17 @@ void refuse_extras(const CLI::App& app, int argc, const char* const* argv) {
   const std::vector<std::string_view> names(options.begin(), options.end());
   std::string text = "is not expected here";
   if (words.size() > 1) {
-    text += ", nor is what follows: ";
+    text += ", nor are the words after it: ";
     for (std::size_t k = 1; k < words.size(); ++k) {
       text += (k > 1 ? " " : "") + words[k];
     }
   }
   const std::string first = words.empty() ? "" : words.front().substr(0, words.front().find('='));
-  throw InputError(
-      "", 0, words.empty() ? command->get_name() : words.front(),
-      text + "; " +
-          (first.starts_with("-") ? suggestion(first, names)
-                                  : "allowed: kairos " + command->get_name() + " --help tells it"));
+  throw InputError("", 0, words.empty() ? command->get_name() : words.front(),
+                   text + "; " +
+                       (first.starts_with("-") ? suggestion(first, names)
+                                               : "allowed: kairos " + command->get_name() +
+                                                     " --help shows what it takes"));
 }
 
 int parse_and_run(int argc, const char* const* argv) {

@@ -66,7 +66,7 @@ void explain_restitution(const Scene& scene, const Model& model) {
   }
   fmt::print(
       "      because an impact has the {} of both bodies' restitution under newton, 1 "
-      "for a body of which nothing is said; thesis knows none\n",
+      "for a body without a value; thesis has none\n",
       how);
 }
 

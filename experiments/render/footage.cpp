@@ -149,7 +149,7 @@ class Summary {
     MeshData data{triples(body, "vertices"), {}};
     for (const Vector3& t : triples(body, "triangles")) {
       if (!((t.array() >= 0.0).all() && (t.array() < 4e9).all())) {
-        fail(body, "triangles", "holds a corner that is none");
+        fail(body, "triangles", "holds a corner that does not exist");
       }
       data.triangles.push_back({static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
                                 static_cast<std::uint32_t>(t[2])});

@@ -54,7 +54,7 @@ DrivenMode driven_mode(const DrivenTouch& touch, const Motion& under) {
     largest = std::max(largest, most(A, Vector3::Unit(axis), window));
   }
   if (under.rotation != RotationKind::fixed) {
-    mode.refusal = "what carries it turns";
+    mode.refusal = "the body that carries it turns";
     return mode;
   }
   const Polynomial<3> presses = along(A, n, 1.0, weight);
@@ -128,11 +128,11 @@ DrivenMode driven_mode(const DrivenTouch& touch, const Motion& under) {
     mode.slip = Slip::slides;
   }
   if (std::isinf(most_friction)) {
-    mode.refusal = "what is rough slides";
+    mode.refusal = "a body with infinite friction slides";
     return mode;
   }
   if (!constant) {
-    mode.refusal = "a body slides on what presses it now more and now less";
+    mode.refusal = "a body slides while the force that presses it changes";
     return mode;
   }
   mode.pushes = weight * n - most_friction * d;

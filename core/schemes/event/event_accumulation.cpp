@@ -124,8 +124,8 @@ EventAccumulation::Finding EventAccumulation::after_impact(BodyIndex a, BodyInde
   }
   if (resting) {
     return {.kind = Finding::Kind::rests,
-            .reason = fmt::format("accumulation: {} come to rest on each other: what is left of "
-                                  "their hops is below {:.2g} m",
+            .reason = fmt::format("accumulation: {} come to rest on each other: the hops "
+                                  "that are left are below {:.2g} m",
                                   run_.names(a, b), tolerance),
             .bodies = {a, b}};
   }

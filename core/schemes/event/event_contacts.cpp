@@ -81,7 +81,7 @@ void EventContacts::settle_anew(BodyIndex i, Instant t) {
   }
   const std::string why = unkept();
   set_free(bodies, t);
-  run_.stop(t, fmt::format("contact: what '{}' and what it touches do from here on is not kept: {}",
+  run_.stop(t, fmt::format("contact: the contacts of '{}' cannot be kept from here on: {}",
                            run_.model.body(i).name, why));
 }
 

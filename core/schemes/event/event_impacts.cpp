@@ -57,7 +57,7 @@ bool EventContacts::meet_in_one_box(BodyIndex a, BodyIndex b, Instant t) {
   }
   if (!predictor_.goes_alone(mover)) {
     run_.stop(t, fmt::format("contact: {} meet across the side of the periodic box, and both are "
-                             "held by what they touch, which is not kept; {}",
+                             "held by bodies that they touch, which is not handled; {}",
                              run_.names(a, b), lasting_contact_advice));
     return false;
   }
@@ -90,7 +90,7 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double bracket, 
   }
   if (run_.detector.info().proves && event.contact.gap > predictor_.touching_gap(a, b)) {
     return run_.stop(t,
-                     fmt::format("undecided: the detector '{}' tells {} to touch, which are {} "
+                     fmt::format("undecided: the detector '{}' reports that {} touch, which are {} "
                                  "m apart; allowed: a larger --tolerance, or another detector",
                                  run_.detector.info().name, run_.names(a, b), event.contact.gap));
   }

@@ -76,7 +76,7 @@ bool EventModes::settle_flat(Gathered found, Instant t, const Adopt& adopt,
     if (over != until.end()) {
       const auto p = over - until.begin();
       if (found.group.patches[static_cast<std::size_t>(p)].manifold.size > 1) {
-        why_not_ = "a body tips over the rim of what carries it";
+        why_not_ = "a body tips over the rim of the body that carries it";
         return false;
       }
       found.group.patches.erase(found.group.patches.begin() + p);

@@ -172,7 +172,7 @@ bool EventModes::settle_curved(const Gathered& found, Instant t, const Adopt& ad
   until = std::min(until, face_exit_time(run_.model.shape(surface), motions_.of(surface), point, n,
                                          curve.duration));
   if (until <= at_once * run_.epoch() && until < curve.duration) {
-    why_not_ = "a body begins to turn: it tips, or what supports it is beside its centre";
+    why_not_ = "a body begins to turn: it tips, or its support is beside its centre";
     return false;
   }
   FlatMode mode;

@@ -34,9 +34,8 @@ std::string why_not_released(const SchemeRun& run, const Grasps& grasps, const G
     const double gap = run.detector.overlap(shape, at, model.shape(i), other).gap;
     if (gap < -touching(shape, at, model.shape(i), other)) {
       return fmt::format(
-          "hand: what '{}' has let go of, '{}', is {:.3g} m inside '{}' at t = {} s; it must be "
-          "let "
-          "go where it is apart from solids or touches them",
+          "hand: '{1}', which '{0}' has let go of, is {2:.3g} m inside '{3}' at t = {4} s; it must "
+          "be released where it is apart from solids or touches them",
           model.body(grip.hand).name, model.body(grip.held).name, -gap, model.body(i).name,
           t.seconds);
     }
