@@ -24,8 +24,8 @@ const State& EventMotions::draw(Instant t) {
   }
   for (BodyIndex i = 0; i < now_.size(); ++i) {
     now_[i] = at(i, t);
-    if (!run_.boxes_on.empty()) {
-      now_[i].pose.position += run_.way_told(i);
+    if (!run_.boxes_crossed.empty()) {
+      now_[i].pose.position += run_.recorded_offset(i);
     }
     mark_brought(i, Instant::never());
   }

@@ -148,7 +148,7 @@ class EventModes {
   [[nodiscard]] std::string why_not_turn(const Gathered& found, Instant t) const;
   void count_step(const Gathered& found, Instant t);
   void still_hold(ContactGroup& group, GroupImpact& impact) const;
-  [[nodiscard]] bool make_room(std::span<const BodyIndex> seeds, Instant t, Wish wish,
+  [[nodiscard]] bool make_room(std::span<const BodyIndex> seeds, Instant t, SettleOptions options,
                                Gathered& found, Turning& turning);
   void lift(Gathered& found, Turning& turning);
   void raise(Gathered& found, Turning& turning);

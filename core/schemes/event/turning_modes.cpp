@@ -114,8 +114,8 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
 
 /// Gathers what touches, with gaps that can be held. Where that brings one nearer to what passes
 /// by, this makes way, too.
-bool EventModes::make_room(std::span<const BodyIndex> seeds, Instant t, SettleOptions options, Gathered& found,
-                           Turning& turning) {
+bool EventModes::make_room(std::span<const BodyIndex> seeds, Instant t, SettleOptions options,
+                           Gathered& found, Turning& turning) {
   for (const bool near : {false, true}) {
     options.near = near;
     found = gather(seeds, t, options);
