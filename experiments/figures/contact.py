@@ -12,7 +12,7 @@ PANELS = {
     "incline": (("distance_error", "error of the distance / m", "Sliding 2 m"),
                 ("max_penetration", "deepest overlap / m", "Sinking"),
                 ("friction_error", "error of the work / J", "Work of friction")),
-    "dominoes": (("end_x", "last domino at the end, x / m", "Where the last one lies"),
+    "dominoes": (("end_x", "tenth domino at the end, x / m", "Where the tenth one is"),
                  ("max_penetration", "deepest overlap / m", "Sinking")),
 }
 LINEAR = ("end_x",)
