@@ -135,7 +135,7 @@ TEST_CASE("bounds: more bodies than memory has room for are refused, with the nu
   const Outcome refused = gas("10000000");
   CAPTURE(refused.err);
   CHECK(refused.exit_code == 2);
-  CHECK(contains(refused.err, "many.ball.count: 10000000 bodies take some 56"));
+  CHECK(contains(refused.err, "many.ball.count: 10000000 bodies take some 20480000000 bytes"));
   const std::string room = "there is room for ";
   const std::size_t at = refused.err.find(room);
   REQUIRE(at != std::string::npos);
