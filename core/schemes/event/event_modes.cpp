@@ -112,6 +112,7 @@ void EventModes::commit(const Gathered& found, const FlatMode& mode, Instant t, 
       continue;
     }
     motions_.book(i, t);
+    motions_.bring(i, t);
     if (const auto& support = motions_.support(i)) {
       const BodyIndex surface = support->surface;
       const auto pair =
