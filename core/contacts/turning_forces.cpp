@@ -40,8 +40,8 @@ bool solve_damped(const MatrixXd& K, const VectorXd& q, double load, VectorXd& x
   }
   MatrixXd damped = K;
   damped.diagonal().array() += damping * K.cwiseAbs().maxCoeff();
-  // Pivots from all rows and columns: it goes element by element. Decompositions by blocks add in an
-  // order that depends on the processor.
+  // Pivots from all rows and columns: it goes element by element. Decompositions by blocks add in
+  // an order that depends on the processor.
   const Eigen::FullPivLU<MatrixXd> decomposition(damped);
   x = VectorXd::Zero(q.size());
   VectorXd rest = -q;
