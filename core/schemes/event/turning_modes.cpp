@@ -379,8 +379,10 @@ void EventModes::book_lift(const Gathered& found, Instant t) {
     const BodyIndex i = found.bodies[k];
     if (run_.model.is_free(i)) {
       motions_.book(i, t);
-      const BodyState& before = motions_.now(i);
       const BodyState& after = found.states[k];
+      // What it was is asked of its motion: `now` may have been drawn since it was brought.
+      BodyState before = after;
+      before.pose = motions_.at(i, t).pose;
       run_.account.moved(i, after.pose.position - before.pose.position);
       run_.ledger.add(EnergyLine::position_correction, run_.account.gained(i, before, after));
     }
