@@ -28,31 +28,10 @@ constexpr std::uint64_t seed = 20261123;
 /// Queries timed at once where each takes microseconds: so few that some round is left alone.
 constexpr std::size_t few = 16;
 
-std::vector<ShapePeer> all_peers() {
-  std::vector<ShapePeer> peers = fcl_shape_peers();
-  const std::vector<ShapePeer> bullet = bullet_shape_peers();
-  peers.insert(peers.end(), bullet.begin(), bullet.end());
-  return peers;
-}
-
 double time_of(const std::vector<RaceResult>& results, const std::string& name) {
   const auto found = std::find_if(results.begin(), results.end(),
                                   [&](const RaceResult& r) { return r.name == name; });
   return found->nanoseconds;
-}
-
-/// Our racer and those peers that have such a query.
-template <typename Subject, typename... More>
-std::vector<Racer> beside_peers(const Racer& ours,
-                                std::function<Contest(const Subject&, More...)> ShapePeer::*query,
-                                const Subject& subject, More... more) {
-  std::vector<Racer> racers{ours};
-  for (const ShapePeer& peer : all_peers()) {
-    if (peer.*query) {
-      racers.push_back({peer.name, (peer.*query)(subject, more...)});
-    }
-  }
-  return racers;
 }
 
 // --- Vertex and face, edge and edge ---------------------------------------------------------
@@ -248,24 +227,13 @@ void large_mesh_bars(int rounds, std::vector<Bar>& bars) {
   const CollisionMesh mesh(data);
   const double build = 1e-6 * query_cost::nanoseconds(query_cost::Clock::now() - start);
   const Shape shape = Mesh{solid_body(std::move(data)).body};
-  std::vector<Motion> first, second;
-  for (std::size_t i = 0; i < flights; ++i) {
-    Random random(seed, (std::uint64_t{5} << 32U) + i);
-    const Vector3 away = random.uniform(2.5, 4.0) * random.direction();
-    const auto flight = [&](const Vector3& from, const Vector3& velocity) {
-      const Quaternion turned = random.orientation();
-      const Vector3 spin = random.uniform(0.0, 0.7) * random.direction();
-      return Motion::ballistic({}, 1.0, {from, turned}, {velocity, spin}, Vector3::Zero());
-    };
-    first.push_back(flight(Vector3::Zero(), Vector3::Zero()));
-    second.push_back(flight(away, -1.5 * away + random.direction()));
-  }
+  const std::vector<MotionPair> pairs = random_flights(flights);
   const auto detector = find_detector("certified");
   std::vector<double> looks(flights);
   std::size_t hits = 0;
   const QueryCost cost = cost_of(flights, rounds, [&](std::size_t i) {
     const TimeOfImpact toi =
-        detector->time_of_impact({shape, first[i]}, {shape, second[i]}, {{}, 1.0}, 1e-9);
+        detector->time_of_impact({shape, pairs[i].a}, {shape, pairs[i].b}, {{}, 1.0}, 1e-9);
     hits += toi.status == ToiStatus::separated ? 0 : 1;
     looks[i] = toi.evaluations;
   });
@@ -342,37 +310,25 @@ void box_bars(std::size_t count, int rounds, std::vector<Bar>& bars) {
 
 // --- Many hulls from frame to frame -----------------------------------------------------------
 
-/// A thousand hulls in a box of 20 m, each moving by 1 % of its size a frame.
 void crowd_bars(int rounds, std::vector<Bar>& bars) {
   constexpr std::size_t count = 1000;
   constexpr int frames = 60;
-  std::vector<Shape> hulls;
-  std::vector<Pose> poses;
-  std::vector<Twist> twists;
-  for (std::size_t i = 0; i < count; ++i) {
-    Random random(seed, (std::uint64_t{6} << 32U) + i);
-    hulls.emplace_back(random_hull(i % 64));
-    const double x = random.uniform(0.0, 20.0);
-    const double y = random.uniform(0.0, 20.0);
-    poses.push_back({{x, y, random.uniform(0.0, 20.0)}, random.orientation()});
-    const Vector3 velocity = 0.01 * random.direction();
-    twists.push_back({velocity, 0.01 * random.direction()});
-  }
+  const DriftingHulls at_first(count);
   double least = never, forgetful = never;
   std::int64_t near = 0, reminded = 0;
   std::size_t overlapping = 0;
   for (int round = 0; round < rounds; ++round) {
     ccd::CollisionWorld world(count);
-    std::vector<Pose> now = poses;
+    DriftingHulls hulls = at_first;
     for (std::size_t i = 0; i < count; ++i) {
-      world.put(i, hulls[i], now[i]);
+      world.put(i, hulls.shapes[i], hulls.poses[i]);
     }
     near = reminded = 0;
     overlapping = 0;
     for (int frame = 0; frame < frames; ++frame) {
       const auto start = query_cost::Clock::now();
       for (std::size_t i = 0; i < count; ++i) {
-        world.move(i, now[i]);
+        world.move(i, hulls.poses[i]);
       }
       overlapping += world.touching().size();
       const double time = query_cost::nanoseconds(query_cost::Clock::now() - start);
@@ -382,10 +338,7 @@ void crowd_bars(int rounds, std::vector<Bar>& bars) {
         near += world.cost().near;
         reminded += world.cost().reminded;
       }
-      for (std::size_t i = 0; i < count; ++i) {
-        now[i] = {now[i].position + twists[i].linear,
-                  kairos::rotate(twists[i].angular, now[i].orientation).normalized()};
-      }
+      hulls.drift();
     }
   }
   const auto later = static_cast<double>(frames - 1);

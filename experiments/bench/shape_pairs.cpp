@@ -81,4 +81,40 @@ MeshPlacements torus_placements(std::size_t count) {
   return tori;
 }
 
+std::vector<MotionPair> random_flights(std::size_t count) {
+  std::vector<MotionPair> pairs;
+  for (std::size_t i = 0; i < count; ++i) {
+    Random random(seed, (std::uint64_t{5} << 32U) + i);
+    const Vector3 away = random.uniform(2.5, 4.0) * random.direction();
+    const auto fly = [&](const Vector3& from, const Vector3& velocity) {
+      const Quaternion turned = random.orientation();
+      const Vector3 spin = random.uniform(0.0, 0.7) * random.direction();
+      return Motion::ballistic({}, 1.0, {from, turned}, {velocity, spin}, Vector3::Zero());
+    };
+    Motion first = fly(Vector3::Zero(), Vector3::Zero());
+    Motion second = fly(away, -1.5 * away + random.direction());
+    pairs.push_back({std::move(first), std::move(second)});
+  }
+  return pairs;
+}
+
+DriftingHulls::DriftingHulls(std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    Random random(seed, (std::uint64_t{6} << 32U) + i);
+    shapes.emplace_back(random_hull(i % 64));
+    const double x = random.uniform(0.0, 20.0);
+    const double y = random.uniform(0.0, 20.0);
+    poses.push_back({{x, y, random.uniform(0.0, 20.0)}, random.orientation()});
+    const Vector3 velocity = 0.01 * random.direction();
+    twists.push_back({velocity, 0.01 * random.direction()});
+  }
+}
+
+void DriftingHulls::drift() {
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    poses[i] = {poses[i].position + twists[i].linear,
+                kairos::rotate(twists[i].angular, poses[i].orientation).normalized()};
+  }
+}
+
 }  // namespace kairos::experiments

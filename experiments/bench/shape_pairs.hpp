@@ -19,4 +19,21 @@ namespace kairos::experiments {
 /// Tori of 1,332 and 3,240 triangles.
 [[nodiscard]] MeshPlacements torus_placements(std::size_t count);
 
+/// How two bodies of about 1 m move within 1 s.
+struct MotionPair {
+  Motion a, b;
+};
+/// Bodies that turn by up to 0.7 rad, the second flying at the first from 2.5 to 4 m away.
+[[nodiscard]] std::vector<MotionPair> random_flights(std::size_t count);
+
+/// Hulls in a box of 20 m, each moving and turning by 1 % of its size a frame.
+struct DriftingHulls {
+  explicit DriftingHulls(std::size_t count);
+  void drift();  ///< to the next frame
+
+  std::vector<Shape> shapes;
+  std::vector<Pose> poses;
+  std::vector<Twist> twists;  ///< per frame
+};
+
 }  // namespace kairos::experiments

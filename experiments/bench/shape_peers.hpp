@@ -2,6 +2,7 @@
 
 #include "core/mesh_data.hpp"
 #include "experiments/bench/bench_peers.hpp"
+#include "experiments/bench/chunk_race.hpp"
 
 #include <functional>
 #include <string>
@@ -43,5 +44,21 @@ struct ShapePeer {
 [[nodiscard]] std::vector<ShapePeer> fcl_shape_peers();
 /// Bullet, if it was found.
 [[nodiscard]] std::vector<ShapePeer> bullet_shape_peers();
+
+/// Our racer and those peers that have such a query.
+template <typename Subject, typename... More>
+std::vector<Racer> beside_peers(const Racer& ours,
+                                std::function<Contest(const Subject&, More...)> ShapePeer::*query,
+                                const Subject& subject, More... more) {
+  std::vector<Racer> racers{ours};
+  for (const auto& peers : {fcl_shape_peers(), bullet_shape_peers()}) {
+    for (const ShapePeer& peer : peers) {
+      if (peer.*query) {
+        racers.push_back({peer.name, (peer.*query)(subject, more...)});
+      }
+    }
+  }
+  return racers;
+}
 
 }  // namespace kairos::experiments

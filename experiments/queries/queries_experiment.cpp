@@ -6,7 +6,6 @@
 #include "ccd/placed_cores.hpp"
 #include "core/mesh_body.hpp"
 #include "core/mesh_shapes.hpp"
-#include "core/random.hpp"
 #include "experiments/bench/race_table.hpp"
 #include "experiments/bench/shape_pairs.hpp"
 #include "experiments/progress_bar.hpp"
@@ -92,22 +91,6 @@ void Survey::add_times(const std::string& question, const std::vector<Racer>& ra
   }
 }
 
-/// Ours first, then what others have for it.
-template <typename Subject, typename... More>
-std::vector<Racer> with_peers(Racer ours,
-                              std::function<Contest(const Subject&, More...)> ShapePeer::*query,
-                              const Subject& subject, More... more) {
-  std::vector<Racer> racers{std::move(ours)};
-  for (const auto& peers : {fcl_shape_peers(), bullet_shape_peers()}) {
-    for (const ShapePeer& peer : peers) {
-      if (peer.*query) {
-        racers.push_back({peer.name, (peer.*query)(subject, more...)});
-      }
-    }
-  }
-  return racers;
-}
-
 Motion flight(const Pose& start, const Twist& twist) {
   return Motion::ballistic({}, 1.0, start, twist, Vector3::Zero());
 }
@@ -135,8 +118,8 @@ void Survey::impacts(const std::string& question, const std::vector<ShapePair>& 
     const bool proven = std::string(name) == "certified";
     add_times(question,
               proven && has_peers
-                  ? with_peers({fmt::format("kairos {}", name), ask}, &ShapePeer::impacts, pairs,
-                               std::max(tolerance, 1e-4))
+                  ? beside_peers({fmt::format("kairos {}", name), ask}, &ShapePeer::impacts, pairs,
+                                 std::max(tolerance, 1e-4))
                   : std::vector<Racer>{{fmt::format("kairos {}", name), ask}},
               pairs.size(), 16);
     add(std::move(costs));
@@ -188,7 +171,7 @@ void Survey::tori() {
     boxes.yes = triangles.yes = exact.yes = yes;
     std::vector<Racer> racers{{"kairos", ask}};
     if (query != nullptr) {
-      racers = with_peers(racers.front(), query, placements);
+      racers = beside_peers(racers.front(), query, placements);
     }
     add_times(question, racers, count, 1);
     add(std::move(boxes));
@@ -227,17 +210,9 @@ void Survey::large_mesh() {
   const Shape shape = Mesh{solid_body(std::move(data)).body};
   const auto detector = find_detector("certified");
   Costs costs{question, "looks, certified", {}, 0};
-  for (std::size_t i = 0; i < flights; ++i) {
-    Random random(seed, (std::uint64_t{5} << 32U) + i);
-    const Vector3 away = random.uniform(2.5, 4.0) * random.direction();
-    const auto fly = [&](const Vector3& from, const Vector3& velocity) {
-      const Quaternion turned = random.orientation();
-      const Vector3 spin = random.uniform(0.0, 0.7) * random.direction();
-      return flight({from, turned}, {velocity, spin});
-    };
-    const Motion a = fly(Vector3::Zero(), Vector3::Zero());
-    const Motion b = fly(away, -1.5 * away + random.direction());
-    const TimeOfImpact toi = detector->time_of_impact({shape, a}, {shape, b}, {{}, 1.0}, 1e-9);
+  for (const MotionPair& pair : random_flights(flights)) {
+    const TimeOfImpact toi =
+        detector->time_of_impact({shape, pair.a}, {shape, pair.b}, {{}, 1.0}, 1e-9);
     costs.work.push_back(toi.evaluations);
     costs.yes += toi.status == ToiStatus::separated ? 0 : 1;
   }
@@ -334,21 +309,13 @@ void Survey::cloth() {
   }
 }
 
-/// A thousand hulls in a box of 20 m, each moving by 1 % of its size a frame.
 void Survey::crowd() {
   constexpr std::size_t count = 1000;
   constexpr int frames = 60;
   ccd::CollisionWorld world(count);
-  std::vector<Pose> now;
-  std::vector<Twist> twists;
+  DriftingHulls hulls(count);
   for (std::size_t i = 0; i < count; ++i) {
-    Random random(seed, (std::uint64_t{6} << 32U) + i);
-    const double x = random.uniform(0.0, 20.0);
-    const double y = random.uniform(0.0, 20.0);
-    now.push_back({{x, y, random.uniform(0.0, 20.0)}, random.orientation()});
-    const Vector3 velocity = 0.01 * random.direction();
-    twists.push_back({velocity, 0.01 * random.direction()});
-    world.put(i, random_hull(i % 64), now[i]);
+    world.put(i, hulls.shapes[i], hulls.poses[i]);
   }
   const std::string question = "which of 1000 hulls overlap in a frame?";
   Costs near{question, "pairs whose boxes overlap", {}, 0};
@@ -356,7 +323,7 @@ void Survey::crowd() {
   Costs asked{question, "of them asked anew", {}, 0};
   for (int frame = 0; frame < frames; ++frame) {
     for (std::size_t i = 0; i < count; ++i) {
-      world.move(i, now[i]);
+      world.move(i, hulls.poses[i]);
     }
     const bool some = !world.touching().empty();
     near.work.push_back(static_cast<double>(world.cost().near));
@@ -365,10 +332,7 @@ void Survey::crowd() {
     for (Costs* costs : {&near, &reminded, &asked}) {
       costs->yes += some ? 1 : 0;
     }
-    for (std::size_t i = 0; i < count; ++i) {
-      now[i] = {now[i].position + twists[i].linear,
-                kairos::rotate(twists[i].angular, now[i].orientation).normalized()};
-    }
+    hulls.drift();
   }
   for (Costs* costs : {&near, &reminded, &asked}) {
     add(std::move(*costs));
