@@ -101,7 +101,8 @@ std::span<const Erratum> errata() {
        one_contact_a_frame},
       {"12", "9.1.1.2.2", "smaller steps than frames catch the collision",
        "taken literally, with a threshold d of half of w + 2r, a fraction (d-r)/(v h) goes through "
-       "where n = floor(v h/d) is odd, r = v h - n d: all just above d/h, where the original lets "
+       "where n = ceil(v h/d) - 1 is odd, r = v h - n d: all just above d/h, where the original "
+       "lets "
        "none through; equal substeps and location mend it",
        "prediction 12: fig. 15 taken literally still tunnels; its mends do not", literal_substeps},
       {"12a", "9.1.3", "the analytic approach will also solve this problem (of the user's bat)",
