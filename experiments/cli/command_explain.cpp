@@ -11,6 +11,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace kairos::experiments {
 namespace {
@@ -30,15 +31,18 @@ std::string combination(Combine how, double e, double other) {
 
 /// Explains the restitution of pairs: by default the product of both bodies', which few expect.
 void explain_restitution(const Scene& scene, const Model& model) {
-  std::map<double, std::string> free, all;  // one body of each restitution
+  std::map<double, BodyIndex> free;              // one body of each restitution
+  std::map<double, std::vector<BodyIndex>> all;  // two of each, since no body meets itself
   for (BodyIndex i = 0; i < model.size(); ++i) {
     const Body& body = scene.bodies[i];
     if (model.is_field(i) || body.entity->kind() == "hand") {
       continue;
     }
-    all.emplace(body.restitution, body.name);
+    if (std::vector<BodyIndex>& of_it = all[body.restitution]; of_it.size() < 2) {
+      of_it.push_back(i);
+    }
     if (model.is_free(i)) {
-      free.emplace(body.restitution, body.name);
+      free.emplace(body.restitution, i);
     }
   }
   if (free.empty() || all.empty()) {
@@ -48,19 +52,21 @@ void explain_restitution(const Scene& scene, const Model& model) {
   fmt::print("\nrestitution\n");
   if (all.size() == 1 && all.begin()->first == 1.0) {
     fmt::print(
-        "  impacts lose nothing\n      because the restitution of a body is 1 where nothing "
+        "  impacts lose nothing{}\n      because the restitution of a body is 1 where nothing "
         "is said, and an impact has the {} of both\n",
-        how);
+        model.has_friction() ? " but to friction" : "", how);
     return;
   }
   constexpr std::size_t most = 8;
   std::set<std::pair<double, double>> told;
-  for (const auto& [e, ball] : free) {
-    for (const auto& [other, partner] : all) {
-      if (told.size() < most && told.insert(std::minmax(e, other)).second) {
+  for (const auto& [e, body] : free) {
+    for (const auto& [other, partners] : all) {
+      const BodyIndex partner = partners.front() != body ? partners.front() : partners.back();
+      if (partner != body && told.size() < most && told.insert(std::minmax(e, other)).second) {
         fmt::print("  {} = {:.6g}, as for {} and {}\n",
                    combination(scene.restitution_combine, e, other),
-                   combine(scene.restitution_combine, e, other), ball, partner);
+                   combine(scene.restitution_combine, e, other), scene.bodies[body].name,
+                   scene.bodies[partner].name);
       }
     }
   }

@@ -289,6 +289,8 @@ TEST_CASE("explain tells what of the speed an impact keeps", "[cli]") {
   CAPTURE(half.out);
   CHECK(contains(half.out, "0.5 x 0.8 = 0.4, as for ball and floor"));
   CHECK(contains(half.out, "product"));
+  CHECK_FALSE(contains(half.out, "ball and ball"));  // there is one ball, and it never meets itself
+  CHECK(contains(kairos_program({"explain", "stack"}).out, "as for box-01 and box-02"));
 }
 
 TEST_CASE("a message names file, line and key", "[cli]") {
