@@ -35,7 +35,8 @@ void tilt(Polynomial<3>& p, double h, const Vector3& d0, const Vector3& d1) {
 
 Vector4 as_vector(const Quaternion& q) { return {q.w(), q.x(), q.y(), q.z()}; }
 
-/// From the quaternion of a motion (of any length) to an orientation: nearest of its multiples.
+/// From the quaternion of a motion, which may have any length, to an orientation: to that of its
+/// two quaternions of this length which is nearer.
 Vector4 correction(const Vector4& from, const Quaternion& to) {
   const Vector4 target = as_vector(to);
   const double length = from.norm();

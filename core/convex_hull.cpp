@@ -17,7 +17,7 @@ using Index = std::uint32_t;
 using Edge = std::pair<Index, Index>;
 
 bool on_one_line(const Vector3& a, const Vector3& b, const Vector3& c) {
-  // Collinear exactly if no point off the line spans a volume with them.
+  // Three points are on one line exactly if they span no volume with any fourth point.
   for (int k = 0; k < 3; ++k) {
     const Vector3 d = a + Vector3::Unit(k) * std::max(1.0, (b - a).norm());
     if (side_of_plane(a, b, c, d) != 0) {
@@ -27,8 +27,9 @@ bool on_one_line(const Vector3& a, const Vector3& b, const Vector3& c) {
   return true;
 }
 
-/// The hull's surface in triangles: points are added one after the other, what they see is replaced
-/// by a fan around the rim of it. A point in the plane of a triangle does not see it.
+/// The hull's surface in triangles. Points are added one after the other: the triangles that a
+/// point sees are replaced by a fan from the point to their rim. A point in the plane of a triangle
+/// does not see it.
 class Incremental {
  public:
   explicit Incremental(std::span<const Vector3> points) : points_(points) {
@@ -134,7 +135,7 @@ std::vector<std::vector<Index>> polygons(std::span<const Vector3> points,
     }
   }
   const std::vector<Index> face = faces_of(points, triangles, triangle_of);
-  std::map<Index, std::map<Index, Index>> borders;  // of a face: the next corner of each
+  std::map<Index, std::map<Index, Index>> borders;  // by face: what comes after each corner
   std::map<Index, int> faces_at;
   for (const auto& [edge, t] : triangle_of) {
     if (face[t] != face[triangle_of.at({edge.second, edge.first})]) {
@@ -148,7 +149,7 @@ std::vector<std::vector<Index>> polygons(std::span<const Vector3> points,
     const Index first = next.begin()->first;
     Index corner = first;
     do {
-      if (faces_at[corner] > 2) {  // two faces only: within an edge
+      if (faces_at[corner] > 2) {  // where two faces meet alone, an edge goes on
         polygon.push_back(corner);
       }
       corner = next.at(corner);

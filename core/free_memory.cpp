@@ -27,7 +27,7 @@ std::optional<double> number_behind(const std::string& path, const std::string& 
   return std::nullopt;
 }
 
-/// What a limit leaves beside what is used, both in these units; infinite without a limit.
+/// How much may still be used below a limit, in its unit; infinite where there is no limit.
 double left_of(const std::optional<double>& limit, const std::optional<double>& used) {
   return limit ? std::max(*limit - used.value_or(0.0), 0.0)
                : std::numeric_limits<double>::infinity();

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-/// Rounding in the motion of the contact, m/s. An arm is known as well as the coordinates that it
-/// is the difference of.
+/// Rounding error of the velocity of the contact point, m/s. The arm is a difference of
+/// coordinates, and is known no better than they are.
 double rounding(const BodyState& body, const Contact& contact) {
   const double arm = (contact.point - body.pose.position).norm() + body.pose.position.norm();
   return 64.0 * epsilon * body.twist.linear.norm() +

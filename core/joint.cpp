@@ -6,7 +6,7 @@ namespace kairos {
 inline namespace core {
 namespace {
 
-/// A side in the world: its arm, axes, and what its turning does to them.
+/// One side of a joint in the world: its arm, its axes, and what its turning does to them.
 struct Side {
   Side(const JointSide& side, const JointEnd& end)
       : w(end.twist.angular),
@@ -34,7 +34,7 @@ JointRow point_row(const Side& a, const Side& b, const Vector3& e) {
   return {e, a.arm.cross(e), b.arm.cross(e), e.dot(b.point - a.point), e.dot(b.bias() - a.bias())};
 }
 
-/// b's point stays where a's is along an axis n of a.
+/// Along an axis n of a, b's point is no distance away from a's.
 JointRow guide_row(const Side& a, const Side& b, const Vector3& n) {
   const Vector3 d = b.point - a.point;
   const Vector3 n_rate = a.w.cross(n);

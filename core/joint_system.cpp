@@ -13,8 +13,8 @@ inline namespace core {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-/// Relative, of W with a unit diagonal: rows that the others imply leave n eps there, and chains of
-/// bodies whose masses differ by a million leave more than 1e-9.
+/// A pivot below this, of W scaled to a unit diagonal, counts as zero. Rows that the others imply
+/// leave n eps there; chains of bodies whose masses differ by a million leave more than 1e-9.
 constexpr double dependent = 1e-11;
 constexpr int most_rounds = 50;
 
@@ -51,7 +51,8 @@ Vector3 inverse_inertia(const BodyInertia& inertia, const Quaternion& q, const V
 
 }  // namespace
 
-/// Scratch of one thread: nothing is allocated but where a larger system comes by.
+/// Scratch memory of one thread. It grows when a larger system comes, and is allocated at no other
+/// time.
 struct JointSystem::Workspace {
   std::vector<Row> rows;
   std::vector<JointRow> joint;
@@ -303,9 +304,10 @@ JointProjection JointSystem::project_positions(Instant t, std::span<BodyState> s
   const double enough = tolerance(states);
   double last = std::numeric_limits<double>::infinity();
   for (int round = 0; round < most_rounds; ++round) {
-    const double left = residual(t, states);  // leaves the rows in the workspace
+    const double left = residual(t, states);  // fills the workspace's rows as well
     if (left <= enough || !(left < last)) {
-      // Newton converges until roundoff: what no longer falls is that, or is no solution at all.
+      // Newton's method converges until roundoff. A residual that no longer falls is roundoff, or
+      // there is no solution.
       result.converged = left <= 1e-12 * std::max(size_, enough / epsilon);
       return result;
     }
@@ -347,7 +349,7 @@ JointProjection JointSystem::project_velocities(Instant t, std::span<BodyState> 
   factor(states, work);
   JointProjection result;
   work.b.resize(work.size());
-  for (int round = 0; round < 2; ++round) {  // what is left then is roundoff of what is left
+  for (int round = 0; round < 2; ++round) {  // the second removes the roundoff of the first
     for (Eigen::Index i = 0; i < work.size(); ++i) {
       work.b[i] = -rate_of(work.rows[static_cast<std::size_t>(i)], states);
     }

@@ -34,7 +34,8 @@ void check_corners(std::span<const Vector3> vertices, std::span<const Triangle> 
   }
 }
 
-/// Every edge is walked once in each direction, which is what closed and consistently oriented is.
+/// Refuses a surface that is not closed, or not oriented alike everywhere: each edge must be walked
+/// once in each direction.
 void check_closed(std::span<const Triangle> triangles) {
   using Edge = std::pair<std::size_t, std::size_t>;
   std::vector<Edge> there, back;
@@ -110,7 +111,7 @@ MassProperties mass_properties(std::span<const Vector3> vertices,
     extent = std::max(extent, (vertex - middle).norm());
   }
   const Integrals rough = integrate(vertices, triangles, middle);
-  // Of the sum of that many signed volumes, relative to their size.
+  // Rounding error of a sum of so many signed volumes, relative to the cube of the extent.
   const double roundoff =
       64.0 * std::numeric_limits<double>::epsilon() * static_cast<double>(triangles.size());
   if (!(std::abs(rough.volume) > roundoff * power(extent, 3))) {

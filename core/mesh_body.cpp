@@ -11,18 +11,18 @@ namespace kairos {
 inline namespace core {
 namespace {
 
-/// The hull of more vertices takes longer than it saves.
+/// To find the hull of more vertices than that takes longer than it saves.
 constexpr std::size_t most_hull_points = 2'000;
 /// A centroid that is off by less than this part of the extent is the origin.
 constexpr double centroid_roundoff = 1e-14;
-/// What a flat mesh is called thick, as a part of its radius.
+/// The thickness that a flat mesh is said to have, as a part of its radius.
 constexpr double least_width = 1e-3;
 
 std::vector<Vector3> outline_of(const std::vector<Vector3>& vertices) {
   if (vertices.size() <= most_hull_points) {
     try {
       return hull_in_place(vertices)->vertices;
-    } catch (const std::invalid_argument&) {  // flat: all of them are its outline
+    } catch (const std::invalid_argument&) {  // flat: its outline is all vertices
     }
   }
   return vertices;

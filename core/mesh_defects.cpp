@@ -58,8 +58,8 @@ void check_edges(std::span<const Triangle> triangles, std::vector<MeshDefect>& f
   }
 }
 
-/// Corners on one line span no volume with any point: with three that do not lie in one plane with
-/// them it is enough to ask.
+/// Three corners on one line span no volume with any fourth point. It is enough to try three points
+/// that no plane through a holds all of.
 bool on_a_line(const Vector3& a, const Vector3& b, const Vector3& c) {
   const double size =
       std::max((b - a).lpNorm<Eigen::Infinity>(), (c - a).lpNorm<Eigen::Infinity>());

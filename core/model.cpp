@@ -20,7 +20,7 @@ constexpr std::size_t no_island = std::numeric_limits<std::size_t>::max();
 
 bool is_sphere(const Shape& shape) { return std::holds_alternative<Sphere>(shape); }
 
-/// Equal moments to roundoff: the same three extents in another order of the sums.
+/// Whether moments are equal up to roundoff: equal extents may have been summed in another order.
 bool is_spherical(const Vector3& inertia) {
   constexpr double roundoff = 4.0 * std::numeric_limits<double>::epsilon();
   return inertia.maxCoeff() - inertia.minCoeff() <= roundoff * inertia.maxCoeff();
@@ -284,7 +284,7 @@ void Model::choose_islands() {
     for (const BodyIndex i : force.bodies) {
       places.push_back(place[i]);
     }
-    // Most forces act on all of their island, in order: those need no go-between.
+    // Most forces act on all bodies of their island, in its order. They need no `IslandForce`.
     if (force.bodies == island.bodies) {
       island_forces_.push_back(force.force);
     } else {

@@ -77,7 +77,7 @@ void Model::build_joints(const std::vector<std::size_t>& place) {
     if (of_island[k].empty()) {
       continue;
     }
-    // The order of a file changes no bit.
+    // Joints are sorted, so that their order in the file changes no bit.
     std::stable_sort(of_island[k].begin(), of_island[k].end(),
                      [&](const JointSystem::Placed& a, const JointSystem::Placed& b) {
                        return key(a.joint) < key(b.joint);
@@ -103,7 +103,7 @@ void Model::build_joints(const std::vector<std::size_t>& place) {
   }
 }
 
-/// What was written fits to nine digits; from here on it fits to roundoff.
+/// The scene's numbers fit the joints to nine digits. The state is moved until it fits to roundoff.
 void Model::put_onto_joints(State& state) const {
   std::vector<BodyState> jointed;
   for (const Island& island : islands_) {

@@ -148,7 +148,7 @@ class Builder {
     for (std::size_t k = 0; k < 3; ++k) {
       node.centre[k] = static_cast<float>(middle[static_cast<Eigen::Index>(k)]);
     }
-    // From here on nothing is lost: the extents are those about the centre as it was rounded.
+    // The extents are taken about the centre as it was rounded, so that the box holds everything.
     const Vector3 centre = box_of(node).centre;
     Vector3 half = Vector3::Zero();
     each_corner(triangles, [&](const Vector3& v) {
@@ -164,9 +164,10 @@ class Builder {
     return node;
   }
 
-  /// Puts the triangles of the first child in front; returns how many they are. The middles are cut
-  /// at their mean across the longest axis where it parts them; at their median where a branch
-  /// becomes long. In an order that no library is free to choose: the same tree everywhere.
+  /// Puts the triangles of the first child in front and returns how many they are. Their middles
+  /// are cut at the mean across the longest axis where it parts them, and at the median where a
+  /// branch becomes long. The order is fixed here and left to no library, so that trees are the
+  /// same everywhere.
   std::size_t divide(std::span<std::uint32_t> triangles, const ObbNode& node, int depth) const {
     constexpr int mean_until = 64;
     const ObbBox box = box_of(node);

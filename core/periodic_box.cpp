@@ -47,7 +47,7 @@ class PeriodicCheck {
          "lets it fall for ever along y; allowed: 0, or axes = [\"x\", \"z\"]");
   }
 
-  /// Where two images of one could meet the other at once, the nearest would not be the one.
+  /// No body may touch two images of another at once: contact is sought with the nearest alone.
   void room() const {
     double first = 0.0;
     double second = 0.0;
@@ -64,7 +64,7 @@ class PeriodicCheck {
         second = std::max(second, radius);
       }
     }
-    constexpr double more = 1.0 + 1e-6;  // than what may be between two that touch
+    constexpr double more = 1.0 + 1e-6;  // room for the gap that two may have in touch
     for (int k = 0; k < 3; ++k) {
       const double side = box_.highest[k] - box_.lowest[k];
       if (repeats(k) && !(side > 2.0 * more * (first + second))) {
@@ -86,7 +86,7 @@ class PeriodicCheck {
     }
   }
   void plane(const Body& b, const HalfSpace& plane) const {
-    constexpr double roundoff = 1e-12;  // of a normal that was turned to its direction
+    constexpr double roundoff = 1e-12;  // rounding error of a normal that was turned
     const Vector3 normal = half_space_normal(plane, b.initial.pose);
     for (int k = 0; k < 3; ++k) {
       need(b, !repeats(k) || std::abs(normal[k]) <= roundoff, "normal",

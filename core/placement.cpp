@@ -41,7 +41,7 @@ struct Lattice {
 };
 
 Lattice lattice(const Vector3& size, double s) {
-  // Beyond, no count of bodies is asked for.
+  // No scene may ask for more bodies than that.
   constexpr double most = 1e7;
   Lattice result;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -133,7 +133,7 @@ std::vector<Vector3> lattice_sites(const Region& region, double radius, std::siz
   }
   const Vector3 size = room(region, radius);
   const auto enough = static_cast<double>(count);
-  double low = narrowest(radius);  // has enough
+  double low = narrowest(radius);  // this side has enough sites
   double high = 2.0 * std::max(size.maxCoeff(), low);
   for (int i = 0; i < halvings && low < high; ++i) {
     const double middle = low + 0.5 * (high - low);

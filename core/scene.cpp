@@ -7,8 +7,9 @@ namespace kairos {
 inline namespace core {
 namespace {
 
-/// Between the least and the greatest coordinates, as the thesis fits it (3.3): where its middle is
-/// not the body's origin, a compound of that box. Of a flat mesh, the box about the origin.
+/// The box between the least and the greatest coordinates, as the thesis fits it (3.3). Where its
+/// middle is not the body's origin it is a compound of one box. A flat mesh gets the box about its
+/// origin.
 Shape fitted_box(const Mesh& mesh) {
   constexpr double outwards = 1.0 + 0x1p-50;
   constexpr double roundoff = 1e-12;

@@ -22,7 +22,7 @@ struct Match : Cases... {
 template <typename... Cases>
 Match(Cases...) -> Match<Cases...>;
 
-/// About its middle: a cylinder and a ball that is cut in two.
+/// Moments about its middle: those of a cylinder and of a ball that is cut in two halves.
 Vector3 capsule_inertia(const Capsule& capsule, double mass) {
   const double r = capsule.radius;
   const double L = capsule.length;
@@ -72,7 +72,7 @@ double smallest_extent(const Shape& shape) {
             [](const HalfSpace&) { return infinity; },
             [](const Capsule& capsule) { return 2.0 * capsule.radius; },
             [](const Cylinder& c) { return std::min(2.0 * c.radius, c.length); },
-            [](const Cone& cone) {  // between the base's rim and the side across from it
+            [](const Cone& cone) {  // its height, or from the base's rim to the side opposite
               const double side = hypotenuse(cone.radius, cone.height);
               return std::min(cone.height, 2.0 * cone.radius * cone.height / side);
             },

@@ -19,17 +19,18 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Rows that the others imply.
+/// Pivots below this part of the largest one belong to rows that the others imply.
 constexpr double rank_threshold = 1e-11;
-/// Of a cone; one of them along the force that is asked for.
+/// Rays that stand for a cone, one of them along the force that is asked for.
 constexpr int rays_of_cone = 16;
-/// Proposals are sought so far; what is accepted was verified.
+/// The search for forces ends after so many sweeps, or where they change by less than this part of
+/// the greatest. It only proposes: what is accepted was verified.
 constexpr int most_sweeps = 2000;
 constexpr double settled = 1e-10;
 
-/// K x = -q where K may be singular, by a K that is not and what is left, again and again: several
-/// times as fast as an orthogonal decomposition. Of redundant forces it finds some. False: that
-/// does not get there, or is not worth it.
+/// Solves K x = -q, where K may be singular: a damped K, which is not, is solved for what is left,
+/// again and again. It is several times as fast as an orthogonal decomposition. Where forces are
+/// redundant it finds some that fit. False: it does not get there, or is not worth it.
 bool solve_damped(const MatrixXd& K, const VectorXd& q, double load, VectorXd& x) {
   constexpr Index worth_it = 32;
   constexpr double damping = 1e-8;  // of the largest element
