@@ -93,7 +93,7 @@ Complementarity solve_complementarity(const MatrixXd& W, const VectorXd& q, doub
     while (answer.solves < most) {
       const VectorXd next = on_rows(W, q, pressed);
       ++answer.solves;
-      // Goes towards it as far as no row pulls.
+      // Goes towards the solution until some row would pull.
       double share = 1.0;
       for (const Index i : pressed) {
         if (next[i] <= 0.0) {

@@ -11,7 +11,7 @@ inline namespace core {
 namespace {
 
 constexpr int order = 11;  // of the direction; two less than positions may have
-/// Of the last terms, relative: beyond the roundoff of their sum.
+/// The last terms of a series are below this part of its sum, and so below its roundoff.
 constexpr double last_term = 0x1p-56;
 
 }  // namespace

@@ -62,7 +62,7 @@ NonnegativeSolution solve_nonnegative(const MatrixXd& A, const VectorXd& b, Inde
     while (answer.solves < most) {
       const VectorXd next = on_columns(A, b, active);
       ++answer.solves;
-      if (first && next[next.size() - 1] <= 0.0) {  // roundoff of the slope: it would pull
+      if (first && next[next.size() - 1] <= 0.0) {  // only roundoff called it in
         tried[static_cast<std::size_t>(enters)] = 1;
         active.pop_back();
         break;

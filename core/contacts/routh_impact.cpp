@@ -200,7 +200,8 @@ class Routh {
     failed_ = true;
   }
 
-  /// Sliding that turns, with x for which dp = |u_t| dx: u_t decays and is nowhere singular.
+  /// Follows sliding that turns, by a variable x with dp = |u_t| dx: in x, u_t decays without being
+  /// singular anywhere.
   void turn() {
     using State = Eigen::Matrix<double, 8, 1>;  // u, p, work of both
     const auto rate = [&](const State& s) {

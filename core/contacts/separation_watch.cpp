@@ -15,9 +15,9 @@ namespace {
 using Kind = TouchFeature::Kind;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Times are told apart to this part of a step.
+/// Times that differ by less than this part of a step count as one.
 constexpr double finest = 0x1p-46;
-/// Corners this near to a held feature, relative to how far they are out, belong to it.
+/// A corner belongs to a held feature if it is this near to it, relative to how far out both are.
 constexpr double same_corner = 1e-9;
 
 /// Bounds of one motion over a step.
@@ -45,7 +45,7 @@ struct Bounds {
       spin = 2.0 * second / least + 8.0 * (first / least) * (first / least);
     }
   }
-  /// Of the second derivative of a point so far from the origin.
+  /// Bounds the second derivative of a point that is so far from the body's origin, m/s^2.
   [[nodiscard]] double bend(double arm) const {
     return acceleration + arm * (spin + turning * turning);
   }
@@ -99,7 +99,7 @@ class Watcher {
   double strike_time() {
     const std::vector<double> start = heights(0.0);
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
-      // What is nearer already, and draws away, may be so.
+      // Corners that are nearer already may stay so while they draw away.
       candidates_[c].least = watch_.least * std::min(watch_.pair.nearest, start[c]);
     }
     return safe_until(0.0, start, duration_, heights(duration_));
@@ -136,8 +136,8 @@ class Watcher {
     candidates_.push_back(std::move(c));
   }
 
-  /// Of n.(x - q), n and q of `carrier`: n.(x_o - x_c) and what turns. What both do together is no
-  /// part of it.
+  /// Bounds the second derivative of n.(x - q), where n and q belong to `carrier`: of n.(x_o -
+  /// x_c), and of what turns. What both bodies do together is no part of it.
   [[nodiscard]] double bend(const Bounds& carrier, const Bounds& other, const Vector3& n, bool of_a,
                             double arm) const {
     const Polynomial<3>& x_c = (of_a ? watch_.motion_a : watch_.motion_b).position;
@@ -156,7 +156,8 @@ class Watcher {
       along = k >= 2 ? along * duration_ + k * (k - 1) * std::abs(n.dot(c)) : along;
     }
     const double turning = carrier.turning;
-    const double turned = std::min(turning * duration_, 2.0);  // n, since the start
+    // By so much n may have changed since the start.
+    const double turned = std::min(turning * duration_, 2.0);
     const double of_arm = arm * (other.spin + other.turning * other.turning);
     return std::min(along + turned * acceleration, acceleration) + of_arm +
            2.0 * turning * (speed + arm * other.turning) +
@@ -186,14 +187,14 @@ class Watcher {
     double turning = 2.0 * (a_.turning + b_.turning);
     double spin = 2.0 * (a_.spin + b_.spin);
     if (touch.on_a.kind == Kind::line && touch.on_b.kind == Kind::line) {
-      // The normal of two lines turns faster than they do by 1 / sin of their angle.
+      // The normal of two lines turns as fast as they do, divided by the sine of their angle.
       const double sine = (watch_.motion_a.orientation(0.0) * touch.on_a.direction)
                               .cross(watch_.motion_b.orientation(0.0) * touch.on_b.direction)
                               .norm();
       turning /= sine;
       spin /= sine;
     } else {
-      // That of a ball goes round with its middle.
+      // The normal of a ball goes round as its middle goes.
       const double round = 0.5 * (touch.on_a.radius + touch.on_b.radius);
       turning += speeds / round;
       spin += bends / round + 3.0 * (speeds / round) * (speeds / round);

@@ -15,7 +15,7 @@ using Side = TouchRim::Side;
 using Sides = std::vector<TouchRim::Side>;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Directions and places of features agree with those of the shape within this.
+/// Features have the directions and places of the shape's own up to this.
 constexpr double same = 1e-6;
 
 Side through(const Vector3& normal, const Vector3& x) { return {normal, normal.dot(x)}; }
@@ -27,7 +27,7 @@ Sides box_sides(const Vector3& half, const TouchFeature& feature) {
   for (int k = 0; k < 3; ++k) {
     const Vector3 axis = Vector3::Unit(k);
     const bool along = std::abs(feature.direction[k]) > 0.5;
-    // Between the ends along a line, and on a face: between both faces across.
+    // A line ends at the faces across it, and a face at those beside it.
     if (feature.kind != Kind::ball && along == (feature.kind == Kind::line)) {
       sides.push_back({axis, half[k]});
       sides.push_back({-axis, half[k]});

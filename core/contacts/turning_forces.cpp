@@ -187,7 +187,7 @@ TurningForces::Solution TurningForces::solve(std::span<const FrictionChoice> cho
   return found;
 }
 
-/// Largest violation of a sign or of a cone by the forces that were found.
+/// The most by which the forces that were found violate a sign or a cone.
 double TurningForces::cone_violation(std::span<const FrictionChoice> choices,
                                      const Solution& found) const {
   double worst = 0.0;
@@ -207,7 +207,7 @@ double TurningForces::cone_violation(std::span<const FrictionChoice> choices,
   return worst;
 }
 
-/// Forces inside the cones that do the same; how far from the same the nearest are.
+/// Finds forces inside the cones that do the same; tells how far the nearest are from doing so.
 double TurningForces::nearest_in_cones(std::span<const FrictionChoice> choices, Solution& found) {
   std::vector<Line> rays;
   for (std::size_t k = 0; k < choices.size(); ++k) {
@@ -289,7 +289,7 @@ TurningForces::Solution TurningForces::verified(std::span<const FrictionChoice> 
   return found;
 }
 
-/// One contact of a sweep: its force as the accelerations of the others ask for.
+/// One contact of a sweep takes the force that the accelerations by the others ask for.
 void TurningForces::sweep(std::size_t k, const FrictionChoice& as_is, std::array<double, 3>& force,
                           std::vector<Twist>& v) const {
   const double mu = state_.touches[k].friction;

@@ -41,8 +41,8 @@ std::shared_ptr<const Entity> make_entity(const TableReader& table, const Entity
   return type.make(values);
 }
 
-/// `normal` is told in the world, as it is at the start, and kept in the body. A half-space has no
-/// other shape than its normal.
+/// `normal` is given in the world at the start, and kept in the frame of the body. For a half-space
+/// it is the whole shape.
 void read_normal(const TableReader& table, Body& body) {
   const auto item = table.find("normal");
   if (!item) {

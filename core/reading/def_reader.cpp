@@ -24,7 +24,8 @@ constexpr std::string_view world_keys[] = {"Duration", "Frame", "Summary"};
 constexpr std::string_view types[] = {"O_wall", "O_ball", "O_conveyor", "O_agpad"};
 constexpr std::string_view entities[] = {"wall", "ball", "conveyor", "anti-gravity-pad"};
 constexpr int most_objects = 100000;
-/// A ball's box is a cube: its model is round. What the digits of a model file lose.
+/// A ball whose box is a cube is seen as a sphere. Sides may differ by this part, which is what the
+/// digits of a model file lose.
 constexpr double round_to = 1e-3;
 
 /// A value as it was written, and where.

@@ -58,7 +58,7 @@ Value convert(const toml::node& node, const FileName& file) {
   return value;
 }
 
-// The same the other way.
+// From our documents to those of toml++.
 toml::table to_foreign(const Table& table);
 
 toml::array to_foreign(const Array& array) {
@@ -169,7 +169,7 @@ std::string read_text_file(const std::string& path, std::size_t longest) {
   if (!file) {
     throw InputError(path, 0, "", "cannot be opened; a readable file is needed");
   }
-  // Not through a stream into a stream: that takes a lack of memory for the end of the file.
+  // The file is read by blocks. A copy from stream to stream takes a lack of memory for its end.
   std::string text;
   std::vector<char> block(std::size_t{1} << 16);
   while (file) {

@@ -79,7 +79,7 @@ void read_points(const Reading& reading) {
   if (both && table.has("anchor")) {
     table.fail("anchor", "both points are given too; allowed: two of anchor, point_a, point_b");
   }
-  // Where a weld is makes no difference to what it does.
+  // A weld does the same wherever it is.
   const bool anywhere =
       joint.kind == JointKind::weld && !table.has("point_a") && !table.has("point_b");
   Vector3 at = pose_of(reading.scene, joint.a).position;

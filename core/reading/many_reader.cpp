@@ -25,7 +25,7 @@ constexpr std::string_view orientations[] = {"same", "random"};
 constexpr Range factor{.lowest = 1e-6, .highest = 1e6};
 constexpr Range speed_deviation{.lowest = 0.0, .highest = 1e11, .unit = "m/s"};
 constexpr Range spin_deviation{.lowest = 0.0, .highest = 1e11, .unit = "rad/s"};
-/// Of all in one table.
+/// How many bodies one table may make.
 constexpr std::int64_t most_bodies = 10'000'000;
 
 /// Independent streams of random numbers, so that one choice leaves the others' draws alone.

@@ -15,7 +15,7 @@ inline namespace core {
 namespace {
 
 constexpr std::size_t most_vertices = 3 * most_triangles;
-/// Cutting ears takes the square of it, at worst the cube.
+/// Corners of one polygon. Cutting ears takes the square of their number, at worst the cube.
 constexpr std::size_t most_corners = 1024;
 
 /// Twice the area vector of a closed walk, by the sum of its triangles.

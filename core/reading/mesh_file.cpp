@@ -18,7 +18,7 @@ namespace kairos {
 inline namespace core {
 namespace {
 
-/// A text of 1e7 triangles is that long; where memory ends before, as long as it is.
+/// The text of 1e7 triangles is about that long. Where addresses end before, they are the limit.
 constexpr auto longest_mesh = static_cast<std::size_t>(
     std::min<std::uint64_t>(std::uint64_t{1} << 32, std::numeric_limits<std::size_t>::max()));
 

@@ -19,7 +19,8 @@ namespace {
 constexpr std::size_t most_parts = 1'000;
 constexpr std::size_t most_heights = 1'000;
 
-/// What moves freely turns about its centre of mass, which that of a rounded hull is a part of.
+/// Refuses rounded hulls in what moves freely: it turns about its centre of mass, and that of a
+/// rounded hull is not known.
 void check_rounding(const TableReader& table, const Shape& shape, bool moves_freely) {
   const auto* hull = std::get_if<Hull>(&shape);
   if (moves_freely && hull != nullptr && hull->rounding > 0.0) {

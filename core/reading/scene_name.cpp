@@ -19,7 +19,7 @@ bool is_name(const std::string& text) {
          text.back() != ' ' && std::all_of(text.begin(), text.end(), allowed);
 }
 
-/// In a message, which a zero byte would end.
+/// The text as a message can show it: a zero byte would end the message.
 std::string shown(std::string text) {
   std::replace(text.begin(), text.end(), '\0', '?');
   return text;
