@@ -87,7 +87,6 @@ def schemes(figures, rows):
     exact = pick(rows, scheme="event-driven")[0]
     panels[0].axhline(exact["energy_ratio"], **style.PREDICTION, label="event-driven")
     panels[0].set_ylabel("energy at the end over that at the start")
-    panels[0].set_yscale("log")
     panels[1].set_ylabel("deepest penetration / radii")
     panels[1].set_yscale("symlog", linthresh=1e-3)
     panels[1].axhline(exact["deepest"], **style.PREDICTION, label="event-driven")
