@@ -18,6 +18,7 @@
 #include "ccd/swept_box.hpp"
 #include "ccd/swept_windows.hpp"
 #include "core/error.hpp"
+#include "core/laws/garwin_law.hpp"
 #include "core/laws/newton_law.hpp"
 #include "core/laws/routh_law.hpp"
 #include "core/laws/simultaneous_laws.hpp"
@@ -118,8 +119,9 @@ std::span<const std::shared_ptr<const ContactDetector>> detectors() {
 }
 
 std::span<const std::shared_ptr<const ImpactLaw>> impact_laws() {
-  static const Entries<ImpactLaw> entries{make_thesis_law(), make_newton_law(), make_moreau_law(),
-                                          make_reflections_law(), make_routh_law()};
+  static const Entries<ImpactLaw> entries{make_thesis_law(), make_newton_law(),
+                                          make_moreau_law(), make_reflections_law(),
+                                          make_routh_law(),  make_garwin_law()};
   return entries;
 }
 

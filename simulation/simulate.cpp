@@ -183,8 +183,8 @@ std::string refusal(const Model& model, const Plan& plan) {
   }
   if (const LawInfo law = plan.method.law->info(); model.has_friction() && !law.friction) {
     return fmt::format(
-        "the scene has friction, of which impact law '{}' knows nothing; allowed: newton, routh; "
-        "or friction = 0 for all bodies of the scene",
+        "the scene has friction, of which impact law '{}' knows nothing; allowed: newton, routh, "
+        "garwin; or friction = 0 for all bodies of the scene",
         law.name);
   }
   if (const std::string pair = pair_across_islands(model); detector.at_step_ends && !pair.empty()) {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <utility>
 
@@ -38,8 +39,9 @@ constexpr double reversed = 1e-6;
 /// What is this part of its size beyond a rim is beyond it.
 constexpr double over_rim = 1e-12;
 
-/// The group at other states.
-TurningState at_states(const TurningGroup& group, std::span<const BodyState> free_states) {
+/// The group at another instant, in other states.
+TurningState at_states(const TurningGroup& group, Instant t,
+                       std::span<const BodyState> free_states) {
   TurningState state;
   state.radius = group.start.radius;
   state.touches = group.start.touches;
@@ -52,9 +54,13 @@ TurningState at_states(const TurningGroup& group, std::span<const BodyState> fre
     state.bodies.push_back(group_body(inertia, s.pose));
     Twist load;
     if (free) {
-      load.linear = group.constant_force[i] / inertia.mass;
+      Wrench applied{group.constant_force[i], Vector3::Zero()};
+      for (const Force* const force : group.forces[i]) {
+        force->add(t, {&s, 1}, {&applied, 1});
+      }
+      load.linear = applied.force / inertia.mass;
       if (inertia.rotates) {
-        load.angular = angular_acceleration(inertia, s, Vector3::Zero());
+        load.angular = angular_acceleration(inertia, s, applied.torque);
       }
     }
     state.loads.push_back(load);
@@ -98,8 +104,9 @@ class ContactForce final : public Force {
   ContactForce(const TurningGroup& group, const TurningMode& mode)
       : group_(group), mode_(mode), slow_(slow_slip(group)) {}
 
-  void add(Instant, std::span<const BodyState> bodies, std::span<Wrench> wrenches) const override {
-    const TurningState state = at_states(group_, bodies);
+  void add(Instant t, std::span<const BodyState> bodies,
+           std::span<Wrench> wrenches) const override {
+    const TurningState state = at_states(group_, t, bodies);
     TurningForces forces(state);
     const auto found = forces.solve(directed(mode_, forces.now(), slow_), !forces.several());
     std::size_t next = 0;
@@ -133,6 +140,27 @@ class ContactForce final : public Force {
   const TurningGroup& group_;
   const TurningMode& mode_;
   double slow_;
+};
+
+/// A force on one body, as one of the group's.
+class PlacedForce final : public Force {
+ public:
+  PlacedForce(const Force& force, std::size_t place) : force_(force), place_(place) {}
+
+  void add(Instant t, std::span<const BodyState> bodies,
+           std::span<Wrench> wrenches) const override {
+    force_.add(t, bodies.subspan(place_, 1), wrenches.subspan(place_, 1));
+  }
+  [[nodiscard]] double potential(Instant t, std::span<const BodyState> bodies) const override {
+    return force_.potential(t, bodies.subspan(place_, 1));
+  }
+  [[nodiscard]] bool conservative() const override { return force_.conservative(); }
+  [[nodiscard]] bool involves_rotation() const override { return force_.involves_rotation(); }
+  [[nodiscard]] std::string description() const override { return force_.description(); }
+
+ private:
+  const Force& force_;
+  std::size_t place_;
 };
 
 class Step {
@@ -182,10 +210,19 @@ class Step {
     return states;
   }
 
+  /// The group on its way, s after the start of the step.
+  [[nodiscard]] TurningState at(double s) const {
+    return at_states(group_, t_ + s, free_states(s));
+  }
+
   bool integrate(double longest) {
     Island island;
+    std::deque<PlacedForce> applied;
     const ContactForce force(group_, mode_);
     for (const std::size_t i : free_) {
+      for (const Force* const of_one : group_.forces[i]) {
+        island.forces.push_back(&applied.emplace_back(*of_one, island.bodies.size()));
+      }
       island.bodies.push_back(group_.bodies[i]);
       island.inertia.push_back(group_.inertia[i]);
       island.constant_force.push_back(group_.constant_force[i]);
@@ -219,7 +256,7 @@ class Step {
 
   [[nodiscard]] bool keeps_gaps() const {
     for (int j = 1; j <= samples; ++j) {
-      const TurningState state = at_states(group_, free_states(step_.duration * j / samples));
+      const TurningState state = at(step_.duration * j / samples);
       for (std::size_t k = 0; k < state.touches.size(); ++k) {
         const Touch& touch = state.touches[k];
         const double gap = look_at(touch, state.states[touch.a], state.states[touch.b]).gap;
@@ -261,7 +298,7 @@ class Step {
 
   /// What the mode is at its end for at s; `step`: it is not.
   [[nodiscard]] TurningEnd ends_at(double s) const {
-    const TurningState state = at_states(group_, free_states(s));
+    const TurningState state = at(s);
     TurningForces forces(state);
     for (std::size_t k = 0; k < state.touches.size(); ++k) {
       if (stops(mode_.choices[k], forces.now()[k])) {
@@ -359,7 +396,7 @@ class Step {
   std::vector<Motion> bend() {
     const double h = step_.duration;
     std::vector<Motion> bent = raw_;
-    TurningState end = at_states(group_, free_states(h));
+    TurningState end = at(h);
     std::vector<char> held;
     for (const FrictionChoice& c : mode_.choices) {
       held.push_back(c.does != Does::opens ? 1 : 0);
@@ -435,7 +472,7 @@ class Step {
 
   template <typename Bodies, typename Pairs>
   void power_at(double s, Bodies of_body, Pairs of_pair, Bodies leaks) const {
-    const TurningState state = at_states(group_, free_states(s));
+    const TurningState state = at(s);
     TurningForces forces(state);
     const auto choices = directed(mode_, forces.now(), slow_);
     const auto found = forces.solve(choices, !forces.several());

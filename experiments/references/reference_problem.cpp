@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -39,6 +40,7 @@ std::string ball(std::string_view name, double radius, std::string_view position
       name, radius, restitution, position, rest);
 }
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::string_view up_30 = "[0.5, 0.8660254037844387, 0]";
 constexpr std::string_view turned_30 = "axis_angle = [0, 0, 1, -0.5235987755982988]\n";
 const Vector3 down_30(std::sqrt(3.0) / 2.0, -0.5, 0.0);
@@ -76,6 +78,22 @@ Measure when(EventKind kind, int n = 1) {
     return std::numeric_limits<double>::quiet_NaN();
   };
 }
+
+/// How fast the body b turns at the n-th impact, rad/s.
+Measure spin_at_impact(int n) {
+  return [=](const Simulation& run) {
+    int seen = 0;
+    for (const Event& event : run.trajectory.events()) {
+      if (event.kind == EventKind::impact && ++seen == n) {
+        return std::max(event.before_a.twist.angular.norm(), event.before_b.twist.angular.norm());
+      }
+    }
+    return std::numeric_limits<double>::quiet_NaN();
+  };
+}
+
+/// Of quantities that depend on the gap at which bodies that turn are held.
+constexpr double turning = 1e-9;
 
 void add_blocks(std::vector<ReferenceProblem>& all) {
   const std::string slides = head(2.0, 0.3) + plane("floor") +
@@ -129,6 +147,12 @@ void add_balls(std::vector<ReferenceProblem>& all) {
                  4.05129510429, down(0.1), "newton", velocity(1, down_30)});
   all.push_back({"ball slides down 30 degrees, mu = 0.1", "of its surface by turning", "m/s",
                  2.12176223927, down(0.1), "newton", surface_speed(1, 0.25)});
+  // The sides of the groove are across the incline and level with it.
+  const std::string groove = head(1.0, 0.3) + plane("left", "[0.5, 0.8660254037844387, 1]") +
+                             plane("right", "[0.5, 0.8660254037844387, -1]") +
+                             ball("ball", 0.1, "[0.07071067811865475, 0.1224744871391589, 0]");
+  all.push_back({"ball rolls down a groove of 90 degrees at 30", "velocity after 1 s", "m/s",
+                 2.72222222222, groove, "newton", velocity(2, down_30)});
   const auto thrown = [](double mu) {
     return head(0.2, mu, 0.0) + plane("floor") +
            ball("ball", 0.25, "[0, 0.65, 0]", "velocity = [3, -4, 0]", 0.8);
@@ -137,6 +161,8 @@ void add_balls(std::vector<ReferenceProblem>& all) {
                  thrown(0.1), "newton", velocity(1, Vector3::UnitX())});
   all.push_back({"ball thrown on a floor, mu = 0.3", "velocity along it after", "m/s",
                  2.14285714286, thrown(0.3), "newton", velocity(1, Vector3::UnitX())});
+  all.push_back({"superball thrown on a floor", "velocity along it after", "m/s", 1.28571428571,
+                 thrown(infinity), "garwin", velocity(1, Vector3::UnitX())});
   const auto cradle = [&](std::string_view what, std::string impact, BodyIndex body, double truth) {
     const std::string scene =
         head(2.0, 0.0, 0.0) + ball("a", 0.1, "[-1, 0, 0]", "velocity = [1, 0, 0]", 1.0) +
@@ -168,11 +194,72 @@ void add_stacks(std::vector<ReferenceProblem>& all) {
   all.push_back({"four boxes over an edge, 0.999 of 25/24", "height of the top one after 5 s", "m",
                  0.7, overhang, "newton", position(4, Vector3::UnitY())});
   const std::string ladder =
-      head(0.6, 0.0) + plane("floor") + plane("wall", "[1, 0, 0]") +
+      head(0.8, 0.0) + plane("floor") + plane("wall", "[1, 0, 0]") +
       box("ladder", "[1, 0.05, 0.5]", "[0.543301270189222, 0.891025403784438, 0]",
           "axis_angle = [0, 0, 1, -1.0471975511965976]");
   all.push_back({"ladder slides down a wall", "leaves the wall after", "s", 0.450086985205, ladder,
                  "newton", when(EventKind::contact_ends)});
+  all.push_back({"ladder slides down a wall", "lands after", "s", 0.688800470801, ladder, "newton",
+                 when(EventKind::impact), turning});
+  all.push_back({"ladder slides down a wall", "lands turning at", "rad/s", 3.37980593621, ladder,
+                 "newton", spin_at_impact(1), turning});
+}
+
+// --- Bodies that turn while they touch ---------------------------------------------------------
+
+void add_turning(std::vector<ReferenceProblem>& all) {
+  const auto on_ball = [](double mu) {
+    return head(1.5, mu) +
+           "[[body]]\nname = \"under\"\nentity = \"wall\"\nshape = \"sphere\"\nradius = 1\n" +
+           ball("ball", 0.25,
+                fmt::format("[{:.17g}, {:.17g}, 0]", 1.25 * std::sin(0.1), 1.25 * std::cos(0.1)));
+  };
+  all.push_back({"ball rolls off a ball", "leaves it after", "s", 1.24979796669, on_ball(infinity),
+                 "newton", when(EventKind::contact_ends), turning});
+  all.push_back({"ball slides off a ball", "leaves it after", "s", 1.01469724250, on_ball(0.0),
+                 "newton", when(EventKind::contact_ends), turning});
+  const std::string over_edge =
+      head(0.5, infinity) +
+      "[[body]]\nname = \"table\"\nentity = \"wall\"\nhalf_extents = [1, 0.5, 1]\nposition = "
+      "[-1, -0.5, 0]\n" +
+      ball("ball", 0.1, "[-0.05, 0.1, 0]", "velocity = [0.5, 0, 0]\nangular_velocity = [0, 0, -5]");
+  all.push_back({"ball rolls over the edge of a table", "leaves it after", "s",
+                 0.1 + 0.132745031152, over_edge, "newton", when(EventKind::contact_ends),
+                 turning});
+  const double c = std::cos(0.1);
+  const double s = std::sin(0.1);
+  const std::string rocks =
+      head(3.5, infinity) + plane("floor") +
+      box("box", "[0.1, 0.4, 0.1]",
+          fmt::format("[{:.17g}, {:.17g}, 0]", -0.1 * c + 0.4 * s, 0.1 * s + 0.4 * c),
+          "axis_angle = [0, 0, 1, -0.1]");
+  all.push_back({"box rocks", "strikes for the first time after", "s", 0.264848439164, rocks,
+                 "newton", when(EventKind::impact, 1), turning});
+  all.push_back({"box rocks", "turning at", "rad/s", 0.830944233655, rocks, "newton",
+                 spin_at_impact(1), turning});
+  all.push_back({"box rocks", "for the second time after", "s", 0.711263621508, rocks, "newton",
+                 when(EventKind::impact, 2), turning});
+  all.push_back({"box rocks", "for the eleventh time after", "s", 2.98013354213, rocks, "newton",
+                 when(EventKind::impact, 11), 1e-8});  // adds up
+  const auto domino = [](std::string_view name, double x, std::string_view rest) {
+    return box(name, "[0.05, 0.25, 0.125]", fmt::format("[{}, 0.25, 0]", x), rest);
+  };
+  const std::string dominoes =
+      head(0.3, infinity) + plane("floor") +
+      domino("first", 0.0, "velocity = [0.5, 0.1, 0]\nangular_velocity = [0, 0, -2]") +
+      domino("second", 0.3, "");
+  all.push_back({"domino tips onto the next", "strikes it after", "s", 0.227948927079, dominoes,
+                 "newton", when(EventKind::impact), turning});
+  all.push_back({"domino tips onto the next", "turning at", "rad/s", 2.04866509711, dominoes,
+                 "newton", spin_at_impact(1), turning});
+  const std::string oscillator =
+      head(3.0, 0.2) + plane("floor") + box("block", "[0.2, 0.1, 0.2]", "[0.1, 0.1, 0]") +
+      "[[force]]\nkind = \"spring\"\nname = \"spring\"\nbodies = [\"block\"]\nanchor = [0, 0.1, "
+      "0]\nstiffness = 100\n";
+  all.push_back({"block on a spring, rubbed", "stops for good after", "s", 0.942477796077,
+                 oscillator, "newton", when(EventKind::stick_begins), turning});
+  all.push_back({"block on a spring, rubbed", "stops at", "m", 0.0176, oscillator, "newton",
+                 position(1, Vector3::UnitX()), turning});
 }
 
 void add_joints(std::vector<ReferenceProblem>& all) {
@@ -195,6 +282,8 @@ void add_joints(std::vector<ReferenceProblem>& all) {
       "0]\n[[body]]\nname = \"outer\"\nentity = \"ball\"\nradius = 0.05\nmass = 1\nposition = [2, "
       "0, 0]\n[[joint]]\nkind = \"rod\"\nbodies = [\"inner\"]\nanchor = [0, 0, 0]\n[[joint]]\nkind "
       "= \"rod\"\nbodies = [\"inner\", \"outer\"]\n";
+  all.push_back({"double pendulum", "the inner ball after 2 s, x", "m", -0.467181020829, two,
+                 "newton", position(0, Vector3::UnitX())});
   all.push_back({"double pendulum", "the outer ball after 2 s, x", "m", -1.43762056496, two,
                  "newton", position(1, Vector3::UnitX())});
 }
@@ -206,7 +295,11 @@ std::vector<ReferenceProblem> reference_problems() {
   add_blocks(all);
   add_balls(all);
   add_stacks(all);
+  add_turning(all);
   add_joints(all);
+  for (ReferenceProblem& problem : all) {
+    problem.of_moment = problem.unit == "s" || problem.quantity.ends_with("turning at");
+  }
   return all;
 }
 

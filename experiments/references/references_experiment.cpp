@@ -44,6 +44,10 @@ RunChoice choice_of(const ReferenceProblem& problem, std::string_view scheme) {
 
 Answer answer(const ReferenceProblem& problem, std::string_view scheme) {
   Answer answer;
+  if (problem.of_moment && scheme != "event-driven") {
+    answer.reason = "tells no such moment";
+    return answer;
+  }
   const auto began = std::chrono::steady_clock::now();
   try {
     const Simulation run =

@@ -53,9 +53,10 @@ Twist EventModes::load(BodyIndex i, const BodyState& state) const {
     return {};
   }
   const BodyInertia& inertia = run_.model.inertia(i);
-  Twist load{motions_.steady_force(i) / inertia.mass, Vector3::Zero()};
+  const Wrench applied = motions_.acting(i, run_.time, state);
+  Twist load{applied.force / inertia.mass, Vector3::Zero()};
   if (inertia.rotates) {
-    load.angular = angular_acceleration(inertia, state, Vector3::Zero());
+    load.angular = angular_acceleration(inertia, state, applied.torque);
   }
   return load;
 }
@@ -97,8 +98,10 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
       const Island& island = run_.model.islands()[run_.model.island_of(i)];
       if (island.joints != nullptr) {
         found.refusal = "'" + run_.model.body(i).name + "' hangs on a joint";
-      } else if (island.bodies.size() > 1 || (!island.forces.empty() && !options.impact)) {
-        found.refusal = "'" + run_.model.body(i).name + "' feels forces that are not constant";
+      } else if (island.bodies.size() > 1) {
+        found.refusal = "'" + run_.model.body(i).name + "' hangs on another by a force";
+      } else if (!island.forces.empty()) {
+        found.varies = i;
       }
     } else if (run_.model.mobility(i) == Mobility::driven && !options.impact) {
       found.driven = i;

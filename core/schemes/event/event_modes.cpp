@@ -38,7 +38,9 @@ bool EventModes::settle(std::span<const BodyIndex> seeds, Instant t, const Adopt
   if (options.turning_only && !has_turned(seeds)) {
     return false;
   }
-  if (options.turning_only) {
+  if (found.varies) {
+    why_not_ = "'" + run_.model.body(*found.varies).name + "' feels forces that are not constant";
+  } else if (options.turning_only) {
     why_not_ = contact_mode(found.group, {options.unloaded, options.unite}).refusal;
     if (why_not_.empty()) {
       return false;

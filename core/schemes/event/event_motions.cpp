@@ -437,7 +437,7 @@ void EventMotions::hold(Flow& flow, Instant t) {
   if (!run_.model.islands()[run_.model.island_of(i)].forces.empty()) {
     const auto contact_force = [&](double s) {
       const BodyState state{motion.pose(s), motion.twist(s)};
-      return n.dot(mass * under.acceleration(s) - acting_force(i, t + s, state));
+      return n.dot(mass * under.acceleration(s) - acting(i, t + s, state).force);
     };
     until = std::min(until, release_time(contact_force, std::min(until, left)));
   }
@@ -482,13 +482,15 @@ Vector3 EventMotions::net_force(BodyIndex i) const {
   return run_.model.gravity_force(i) + ties(i).field_force;
 }
 
-/// The whole force on a body that is alone in its island, N: constant, and dependent on the state.
-Vector3 EventMotions::acting_force(BodyIndex i, Instant t, const BodyState& state) const {
-  Wrench wrench{run_.model.gravity_force(i) + field_forces_at(i), Vector3::Zero()};
-  for (const Force* force : run_.model.islands()[run_.model.island_of(i)].forces) {
-    force->add(t, {&state, 1}, {&wrench, 1});
+Wrench EventMotions::acting(BodyIndex i, Instant t, const BodyState& state) const {
+  Wrench wrench{steady_force(i), Vector3::Zero()};
+  const Island& island = run_.model.islands()[run_.model.island_of(i)];
+  if (island.bodies.size() == 1 && island.joints == nullptr) {
+    for (const Force* force : island.forces) {
+      force->add(t, {&state, 1}, {&wrench, 1});
+    }
   }
-  return wrench.force;
+  return wrench;
 }
 
 double EventMotions::pressing(BodyIndex ball, const Support& support, Instant t, bool held) const {
@@ -497,7 +499,7 @@ double EventMotions::pressing(BodyIndex ball, const Support& support, Instant t,
     const Motion& under = riding.motion();
     return under.acceleration(std::min(t - under.start, under.duration));
   };
-  Vector3 own = acting_force(ball, t, now_[ball]) / run_.model.inertia(ball).mass;
+  Vector3 own = acting(ball, t, now_[ball]).force / run_.model.inertia(ball).mass;
   if (const std::optional<Support>& other = ties(ball).support; held && other) {
     own += other->normal * other->normal.dot(surface_acceleration(other->surface) - own);
   }

@@ -145,6 +145,10 @@ class EventMotions {
     return run_.model.gravity_force(i) + field_forces_at(i);
   }
 
+  /// All that acts on a body at t but contacts, N, N m; of an island of several bodies, or with
+  /// joints, what is constant.
+  [[nodiscard]] Wrench acting(BodyIndex i, Instant t, const BodyState& state) const;
+
   /// The ledger follows the island of i up to t; `now` is then the state there.
   void book(BodyIndex i, Instant t) { book(flow_of(i), t); }
   void book_all(Instant t);
@@ -200,7 +204,6 @@ class EventMotions {
   void set_forces(Flow& flow);
   [[nodiscard]] Vector3 field_forces_at(BodyIndex i) const;
   [[nodiscard]] Vector3 net_force(BodyIndex i) const;
-  [[nodiscard]] Vector3 acting_force(BodyIndex i, Instant t, const BodyState& state) const;
 
   void book(Flow& flow, Instant t);
   void book_surface_forces(BodyIndex i, Instant t);

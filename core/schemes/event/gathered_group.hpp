@@ -20,6 +20,7 @@ struct EventModes::Gathered {
   ContactGroup group;
   std::string refusal;
   std::optional<BodyIndex> driven;  ///< one of those that are
+  std::optional<BodyIndex> varies;  ///< one of those that feel forces which are not constant
 
   [[nodiscard]] std::size_t place(BodyIndex i) const {
     return static_cast<std::size_t>(std::find(bodies.begin(), bodies.end(), i) - bodies.begin());

@@ -221,6 +221,8 @@ std::string EventModes::add_touches(Gathered& found, Turning& turning) const {
     const bool free = run_.model.is_free(i);
     group.inertia.push_back(free ? run_.model.inertia(i) : BodyInertia{});
     group.constant_force.push_back(free ? motions_.steady_force(i) : Vector3(Vector3::Zero()));
+    group.forces.push_back(free ? run_.model.islands()[run_.model.island_of(i)].forces
+                                : std::vector<const Force*>());
   }
   for (std::size_t p = 0; p < found.pairs.size(); ++p) {
     const auto [a, b] = found.pairs[p];
@@ -383,7 +385,7 @@ void EventModes::book_lift(const Gathered& found, Instant t) {
       // What it was is asked of its motion: `now` may have been drawn since it was brought.
       BodyState before = after;
       before.pose = motions_.at(i, t).pose;
-      run_.account.moved(i, after.pose.position - before.pose.position);
+      run_.account.moved(i, t, before, after);
       run_.ledger.add(EnergyLine::position_correction, run_.account.gained(i, before, after));
     }
   }

@@ -235,6 +235,15 @@ void EnergyAccount::struck(BodyIndex i, const BodyState& before, const BodyState
   ledger_.exchange(renewed(inertia, before, after));
 }
 
+void EnergyAccount::moved(BodyIndex i, Instant t, const BodyState& from, const BodyState& to) {
+  moved(i, to.pose.position - from.pose.position);
+  const Island& island = model_.islands()[model_.island_of(i)];
+  if (!island.forces.empty()) {
+    ledger_.add(EnergyLine::position_correction,
+                potential_of(island, t, {&to, 1}) - potential_of(island, t, {&from, 1}));
+  }
+}
+
 double EnergyAccount::gained(BodyIndex i, const BodyState& from, const BodyState& to) const {
   const BodyInertia& inertia = model_.inertia(i);
   const double linear = kinetic_gain(inertia.mass, from.twist.linear, to.twist.linear);

@@ -92,6 +92,8 @@ class EnergyAccount {
   void moved(BodyIndex i, const Vector3& displacement) {
     ledger_.add(EnergyLine::position_correction, -model_.gravity_force(i).dot(displacement));
   }
+  /// The same, against the forces of its island, of which it is the only body, too.
+  void moved(BodyIndex i, Instant t, const BodyState& from, const BodyState& to);
 
  private:
   /// Kinetic energy gained minus work of gravity and `other_force`, J; books the latter.
