@@ -3,7 +3,6 @@
 #include "ccd/rounding/roundoff.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
@@ -29,27 +28,9 @@ constexpr double largest = 0x1p22;
 constexpr double more = 1.0 + 0x1p-22;
 constexpr double sooner = 1.0 - 0x1p-20;
 
-/// Pairs of one loop, a multiple of what a register holds.
-constexpr std::size_t block = 32;
+/// What the widest registers hold.
 constexpr std::size_t widest = 4;
-
-/// The other balls of some pairs, component by component.
-struct Others {
-  using Column = std::array<double, block>;
-  std::array<Column, 3> p, v;
-  Column lag, radius;
-  Column comparable;  ///< 1: its acceleration is that of the one; else 0
-
-  void set(std::size_t k, const BallFlight& one, const BallFlight& other) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      p[axis][k] = other.position[static_cast<Eigen::Index>(axis)];
-      v[axis][k] = other.velocity[static_cast<Eigen::Index>(axis)];
-    }
-    lag[k] = other.start - one.start;
-    radius[k] = other.radius;
-    comparable[k] = one.acceleration == other.acceleration ? 1.0 : 0.0;
-  }
-};
+static_assert(FlightsBeside::block % widest == 0);
 
 KAIROS_INLINE double dot(const double (&x)[3], const double (&y)[3]) {
   return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
@@ -57,7 +38,7 @@ KAIROS_INLINE double dot(const double (&x)[3], const double (&y)[3]) {
 KAIROS_INLINE double positive_part(double x) { return x < 0.0 ? 0.0 : x; }
 
 /// For how long from the later start ball k is clear of `a`.
-KAIROS_INLINE double clear_time(const BallFlight& a, const Others& b, std::size_t k,
+KAIROS_INLINE double clear_time(const BallFlight& a, const FlightsBeside::Block& b, std::size_t k,
                                 double tolerance) {
   const double s_a = positive_part(b.lag[k]);
   const double s_b = positive_part(-b.lag[k]);
@@ -69,8 +50,8 @@ KAIROS_INLINE double clear_time(const BallFlight& a, const Others& b, std::size_
     const double g = a.acceleration.data()[i];
     const double p_a = a.position.data()[i];
     const double v_a = a.velocity.data()[i];
-    const double p_b = b.p[i][k];
-    const double v_b = b.v[i][k];
+    const double p_b = b.position[i][k];
+    const double v_b = b.velocity[i][k];
     v[i] = (v_b + g * s_b) - (v_a + g * s_a);
     d[i] = (p_b + (v_b + 0.5 * g * s_b) * s_b) - (p_a + (v_a + 0.5 * g * s_a) * s_a);
     way += __builtin_fabs(v_a) + __builtin_fabs(v_b) + __builtin_fabs(g) * (s_a + s_b);
@@ -102,8 +83,8 @@ KAIROS_INLINE double clear_time(const BallFlight& a, const Others& b, std::size_
   return known ? clear : 0.0;
 }
 
-KAIROS_WIDE void clear_times_of(const BallFlight& one, const Others& others, std::size_t count,
-                                double tolerance, double* clear) {
+KAIROS_WIDE void clear_times_of(const BallFlight& one, const FlightsBeside::Block& others,
+                                std::size_t count, double tolerance, double* clear) {
   for (std::size_t k = 0; k < count; ++k) {
     clear[k] = clear_time(one, others, k, tolerance);
   }
@@ -111,19 +92,14 @@ KAIROS_WIDE void clear_times_of(const BallFlight& one, const Others& others, std
 
 }  // namespace
 
-void filter_balls(const BallFlight& one, std::span<const BallFlight> others, double tolerance,
-                  std::span<double> clear) {
-  assert(others.size() == clear.size());
-  Others batch;
-  std::array<double, block> found;
-  for (std::size_t first = 0; first < others.size(); first += block) {
-    const std::size_t count = std::min(block, others.size() - first);
+void filter_balls(const FlightsBeside& balls, double tolerance, std::span<double> clear) {
+  assert(clear.size() >= (balls.size() + widest - 1) / widest * widest);
+  for (std::size_t first = 0; first < balls.size(); first += FlightsBeside::block) {
+    const std::size_t count = std::min(FlightsBeside::block, balls.size() - first);
+    // Registers are filled with what is there already.
     const std::size_t whole = (count + widest - 1) / widest * widest;
-    for (std::size_t k = 0; k < whole; ++k) {  // registers are filled with what is there already
-      batch.set(k, one, others[first + std::min(k, count - 1)]);
-    }
-    clear_times_of(one, batch, whole, tolerance, found.data());
-    std::copy_n(found.begin(), count, clear.begin() + static_cast<std::ptrdiff_t>(first));
+    clear_times_of(balls.one(), balls.blocks()[first / FlightsBeside::block], whole, tolerance,
+                   clear.data() + first);
   }
 }
 

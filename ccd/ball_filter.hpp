@@ -10,7 +10,6 @@ namespace kairos::ccd {
 /// error bounds. Instead reaches are 2^-22 larger, which is more than all that is rounded; pairs of
 /// which that does not hold (far from the origin, or fast, for their size) and pairs of different
 /// accelerations are let through.
-void filter_balls(const BallFlight& one, std::span<const BallFlight> others, double tolerance,
-                  std::span<double> clear);
+void filter_balls(const FlightsBeside& balls, double tolerance, std::span<double> clear);
 
 }  // namespace kairos::ccd

@@ -182,17 +182,29 @@ void CellGrid::block(const CellIndex& cell, const CellIndex& wide, std::vector<I
   Id* end = out.data() + before;
   Id chains = none;
   const bool turns = first[0] + 2 * wide[0] >= count_[0];
+  const auto take = [&end, &chains](const Cell& of) {
+    // Both places are copied, though most cells have none or one: this saves a branch.
+    std::copy_n(of.bodies.begin(), room, end);
+    end += of.count;
+    chains &= of.next;
+  };
   std::int64_t z = first[2];
   for (std::int64_t dz = -wide[2]; dz <= wide[2]; ++dz, z = next(z, 2)) {
     std::int64_t y = first[1];
     for (std::int64_t dy = -wide[1]; dy <= wide[1]; ++dy, y = next(y, 1)) {
       const Cell* const row = &cells_[at(0, y, z)];
-      std::int64_t x = first[0];
-      for (std::int64_t dx = -wide[0]; dx <= wide[0]; ++dx, x = turns ? next(x, 0) : x + 1) {
-        // Both places are copied, though most cells have none or one: this saves a branch.
-        std::copy_n(row[x].bodies.begin(), room, end);
-        end += row[x].count;
-        chains &= row[x].next;
+      if (wide[0] == 0) {
+        take(row[first[0]]);
+      } else if (!turns) {
+        const Cell* const from = row + first[0];
+        take(from[0]);
+        take(from[1]);
+        take(from[2]);
+      } else {
+        std::int64_t x = first[0];
+        for (int dx = 0; dx < 3; ++dx, x = next(x, 0)) {
+          take(row[x]);
+        }
       }
     }
   }

@@ -26,16 +26,73 @@ double time_to_rise(double v, double a, double rise) {
   return sum > 0.0 ? 2.0 * rise / sum : infinity;
 }
 
+/// The way of a body as cells need it: from a motion, or from the flight of a ball.
+struct MotionWay {
+  const Motion& motion;
+
+  [[nodiscard]] Instant start() const { return motion.start; }
+  [[nodiscard]] int degree() const { return motion.position.degree(); }
+  [[nodiscard]] Vector3 at(double s) const { return motion.position(s); }
+  [[nodiscard]] double error() const { return motion.error_radius; }
+  /// Half of the acceleration, and the velocity at local time s, of a parabola.
+  [[nodiscard]] double half_acceleration(int k) const {
+    return degree() == 2 ? motion.position[2][k] : 0.0;
+  }
+  [[nodiscard]] double velocity(int k, double s) const {
+    return degree() >= 1 ? motion.position[1][k] + 2.0 * half_acceleration(k) * s : 0.0;
+  }
+  /// Of the coordinates at local time s, from above.
+  [[nodiscard]] double size(double s) const {
+    const Polynomial<3>& p = motion.position;
+    double size = p[p.degree()].lpNorm<Eigen::Infinity>();
+    for (int k = p.degree() - 1; k >= 0; --k) {
+      size = size * s + p[k].lpNorm<Eigen::Infinity>();
+    }
+    return size;
+  }
+  /// For how long it goes at most so far from where it is at local time s.
+  [[nodiscard]] double time_within(double least, double s) const {
+    const double left = motion.duration - s;
+    double stays = left;
+    while (stays > 0.0 && !(motion.displacement_bound(s, s + stays) <= least)) {
+      stays *= 0.5;
+    }
+    // To its end, which rounding may put a little after now for ever.
+    return stays == left ? infinity : stays;
+  }
+};
+
+struct FlightWay {
+  const BallFlight& flight;
+
+  [[nodiscard]] Instant start() const { return flight.start; }
+  [[nodiscard]] static int degree() { return 2; }
+  [[nodiscard]] Vector3 at(double s) const {
+    return (0.5 * flight.acceleration * s + flight.velocity) * s + flight.position;
+  }
+  [[nodiscard]] static double error() { return 0.0; }
+  [[nodiscard]] double half_acceleration(int k) const { return 0.5 * flight.acceleration[k]; }
+  [[nodiscard]] double velocity(int k, double s) const {
+    return flight.velocity[k] + 2.0 * half_acceleration(k) * s;
+  }
+  [[nodiscard]] double size(double s) const {
+    return (0.5 * flight.acceleration.lpNorm<Eigen::Infinity>() * s +
+            flight.velocity.lpNorm<Eigen::Infinity>()) *
+               s +
+           flight.position.lpNorm<Eigen::Infinity>();
+  }
+  [[nodiscard]] static double time_within(double /*least*/, double /*s*/) { return infinity; }
+};
+
 class Cells final : public Neighbourhood {
  public:
   Cells(const Model& model, double tolerance, const CellSize& size)
       : layout_(model, tolerance, size),
         grid_(layout_.counts, layout_.first),
         large_(model, make_dynamic_tree(model.size()), tolerance),
-        places_(scattered<Place>(model.size())),
-        usual_(model.size()) {
+        places_(scattered<Place>(model.size())) {
     for (BodyIndex i = 0; i < model.size(); ++i) {
-      usual_[i] =
+      places_[i].usual =
           layout_.fits && model.is_free(i) && bounding_radius(model.shape(i)) <= layout_.radius;
     }
     if (const auto& periodic = model.scene().periodic) {
@@ -44,19 +101,19 @@ class Cells final : public Neighbourhood {
   }
 
   Instant enter(BodyIndex i, const MovingShape& moving, Instant t, Instant until) override {
-    const double s = t - moving.motion.start;
-    if (!fits(i, moving, s)) {
-      if (places_[i].at == Place::in_cell) {
-        leave(i);
-      }
-      places_[i].at = Place::in_box;
-      return large_.enter(i, moving, t, until);
+    if (const auto crosses = enter_along(i, MotionWay{moving.motion}, t, until)) {
+      return *crosses;
     }
-    const Vector3 p = moving.motion.position(s);
-    if (places_[i].at != Place::in_cell || !inside(places_[i].cell(), p)) {
-      move(i, cell_of(p));
+    if (places_[i].at == Place::in_cell) {
+      leave(i);
     }
-    return exit(i, moving, p, t, until);
+    places_[i].at = Place::in_box;
+    return large_.enter(i, moving, t, until);
+  }
+
+  std::optional<Instant> enter(BodyIndex i, const BallFlight& flight, Instant t,
+                               Instant until) override {
+    return enter_along(i, FlightWay{flight}, t, until);
   }
 
   void near(BodyIndex i, std::vector<Neighbour>& out) override {
@@ -73,33 +130,17 @@ class Cells final : public Neighbourhood {
 
   Instant cross(BodyIndex i, const MovingShape& moving, Instant t, Instant until,
                 std::vector<Neighbour>& out) override {
-    const double s = t - moving.motion.start;
-    if (places_[i].at != Place::in_cell || !fits(i, moving, s)) {
-      const Instant crosses = enter(i, moving, t, until);
-      near(i, out);
-      return crosses;
+    if (const auto crosses = cross_along(i, MotionWay{moving.motion}, t, until, out)) {
+      return *crosses;
     }
-    const Vector3 p = moving.motion.position(s);
-    const CellIndex before = places_[i].cell();
-    const CellIndex now = cell_of(p);
-    if (now != before) {
-      move(i, now);
-      found_.clear();
-      grid_.entered(before, now, found_);
-      tell(i, out);
-      const Aabb known = reach(before);
-      boxes_.clear();
-      large_.boxes().overlapping(reach(now), boxes_);
-      for (const Neighbour& j : boxes_) {
-        const Aabb& swept = large_.swept(j.body);
-        const Vector3 shift =
-            periodic_ == nullptr ? Vector3(Vector3::Zero()) : periodic_->shift(j.image);
-        if (!known.overlaps({swept.lower + shift, swept.upper + shift})) {
-          out.push_back(j);
-        }
-      }
-    }
-    return exit(i, moving, p, t, until);
+    const Instant crosses = enter(i, moving, t, until);
+    near(i, out);
+    return crosses;
+  }
+
+  std::optional<Instant> cross(BodyIndex i, const BallFlight& flight, Instant t, Instant until,
+                               std::vector<Neighbour>& out) override {
+    return cross_along(i, FlightWay{flight}, t, until, out);
   }
 
   void go_on_as(BodyIndex i, const Image& n) override {
@@ -130,6 +171,7 @@ class Cells final : public Neighbourhood {
     enum At : std::uint8_t { nowhere, in_cell, in_box };
     std::array<std::int32_t, 3> along{};
     At at = nowhere;
+    bool usual = false;  ///< of a size for cells
 
     [[nodiscard]] CellIndex cell() const { return {along[0], along[1], along[2]}; }
 
@@ -142,17 +184,55 @@ class Cells final : public Neighbourhood {
     }
   };
 
+  /// Nothing: it is in no cell.
+  template <typename Way>
+  std::optional<Instant> enter_along(BodyIndex i, const Way& way, Instant t, Instant until) {
+    const double s = t - way.start();
+    if (!fits(i, way, s)) {
+      return std::nullopt;
+    }
+    const Vector3 p = way.at(s);
+    if (places_[i].at != Place::in_cell || !inside(places_[i].cell(), p)) {
+      move(i, cell_of(p));
+    }
+    return exit(i, way, p, t, until);
+  }
+
+  /// Nothing: it was in no cell, or is in none any more.
+  template <typename Way>
+  std::optional<Instant> cross_along(BodyIndex i, const Way& way, Instant t, Instant until,
+                                     std::vector<Neighbour>& out) {
+    const double s = t - way.start();
+    if (places_[i].at != Place::in_cell || !fits(i, way, s)) {
+      return std::nullopt;
+    }
+    const Vector3 p = way.at(s);
+    const CellIndex before = places_[i].cell();
+    const CellIndex now = cell_of(p);
+    if (now != before) {
+      move(i, now);
+      found_.clear();
+      grid_.entered(before, now, found_);
+      tell(i, out);
+      const Aabb known = reach(before);
+      boxes_.clear();
+      large_.boxes().overlapping(reach(now), boxes_);
+      for (const Neighbour& j : boxes_) {
+        const Aabb& swept = large_.swept(j.body);
+        const Vector3 shift =
+            periodic_ == nullptr ? Vector3(Vector3::Zero()) : periodic_->shift(j.image);
+        if (!known.overlaps({swept.lower + shift, swept.upper + shift})) {
+          out.push_back(j);
+        }
+      }
+    }
+    return exit(i, way, p, t, until);
+  }
+
   /// Whether its coordinates resolve a cell, and its motion is known as well as a cell allows.
-  [[nodiscard]] bool fits(BodyIndex i, const MovingShape& moving, double s) const {
-    if (!usual_[i] || !(moving.motion.error_radius <= layout_.slack)) {
-      return false;
-    }
-    const Polynomial<3>& p = moving.motion.position;
-    double size = p[p.degree()].lpNorm<Eigen::Infinity>();
-    for (int k = p.degree() - 1; k >= 0; --k) {
-      size = size * s + p[k].lpNorm<Eigen::Infinity>();
-    }
-    return size <= layout_.farthest;
+  template <typename Way>
+  [[nodiscard]] bool fits(BodyIndex i, const Way& way, double s) const {
+    return places_[i].usual && way.error() <= layout_.slack && way.size(s) <= layout_.farthest;
   }
 
   [[nodiscard]] CellIndex cell_of(const Vector3& p) const {
@@ -191,32 +271,27 @@ class Cells final : public Neighbourhood {
 
   /// When a body at p leaves the surroundings of its cell, at most 15/16 of the margin beyond it:
   /// the rest is more than rounding takes.
-  [[nodiscard]] Instant exit(BodyIndex i, const MovingShape& moving, const Vector3& p, Instant t,
+  template <typename Way>
+  [[nodiscard]] Instant exit(BodyIndex i, const Way& way, const Vector3& p, Instant t,
                              Instant until) const {
-    const Motion& motion = moving.motion;
     const double allowed = 15.0 / 16.0 * layout_.margin;
-    const double s = t - motion.start;
+    const double s = t - way.start();
+    const bool bends = way.degree() > 2;
+    const CellIndex cell = places_[i].cell();
     double stays = infinity;
     double least = infinity;
     for (int k = 0; k < 3; ++k) {
-      const double below = p[k] - (corner(places_[i].cell(), k) - allowed);
+      const double below = p[k] - (corner(cell, k) - allowed);
       const double above = layout_.width[k] + 2.0 * allowed - below;
       least = std::min({least, below, above});
-      if (motion.position.degree() <= 2) {
-        const double c = motion.position.degree() == 2 ? motion.position[2][k] : 0.0;
-        const double v = motion.position.degree() >= 1 ? motion.position[1][k] + 2.0 * c * s : 0.0;
+      if (!bends) {
+        const double c = way.half_acceleration(k);
+        const double v = way.velocity(k, s);
         stays = std::min({stays, time_to_rise(v, c, above), time_to_rise(-v, -c, below)});
       }
     }
-    if (motion.position.degree() > 2) {
-      const double left = motion.duration - s;
-      stays = left;
-      while (stays > 0.0 && !(motion.displacement_bound(s, s + stays) <= least)) {
-        stays *= 0.5;
-      }
-      if (stays == left) {
-        return Instant::never();  // to its end, which rounding may put a little after now for ever
-      }
+    if (bends) {
+      stays = way.time_within(least, s);
     }
     const Instant crosses = t + stays;
     return crosses < until ? crosses : Instant::never();
@@ -332,7 +407,6 @@ class Cells final : public Neighbourhood {
   CellGrid grid_;
   SweptWindows large_;
   std::vector<Place> places_;
-  std::vector<char> usual_;
   const PeriodicBox* periodic_ = nullptr;
   std::vector<Neighbour> boxes_;  ///< scratch
   std::vector<CellGrid::Id> found_;

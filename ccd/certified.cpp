@@ -4,6 +4,7 @@
 #include "ccd/ball_filter.hpp"
 #include "ccd/closed_form.hpp"
 #include "ccd/shape_detector.hpp"
+#include "ccd/sphere_sphere.hpp"
 
 namespace kairos::ccd {
 namespace {
@@ -17,9 +18,13 @@ class Certified final : public ShapeDetector {
             .summary = "closed forms and advancement, ending in a proven bracket"};
   }
 
-  void clear_times(const BallFlight& one, std::span<const BallFlight> others, double tolerance,
+  [[nodiscard]] std::optional<TimeOfImpact> ball_impact(const BallFlight& a, const BallFlight& b,
+                                                        const Window& window) const override {
+    return sphere_sphere_impact(a, b, window);
+  }
+  void clear_times(const FlightsBeside& balls, double tolerance,
                    std::span<double> clear) const override {
-    filter_balls(one, others, tolerance, clear);
+    filter_balls(balls, tolerance, clear);
   }
 
  private:

@@ -2,6 +2,7 @@
 
 #include "ccd/closed_form.hpp"
 #include "ccd/descent_answer.hpp"
+#include "ccd/query_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,23 +14,55 @@ constexpr double u = unit_roundoff;
 
 double largest(const Vector3& x) { return x.cwiseAbs().maxCoeff(); }
 
+/// A ball on a parabola, as far as it matters here.
+struct Ball {
+  int degree;  ///< of the parabola
+  Vector3 p, v, c;
+  Instant start;
+  double radius;
+  double error;
+
+  explicit Ball(const MovingShape& of)
+      : degree(of.motion.position.degree()),
+        p(of.motion.position[0]),
+        v(degree > 0 ? Vector3(of.motion.position[1]) : Vector3(Vector3::Zero())),
+        c(degree > 1 ? Vector3(of.motion.position[2]) : Vector3(Vector3::Zero())),
+        start(of.motion.start),
+        radius(std::get<Sphere>(of.shape).radius),
+        error(of.motion.error_radius) {}
+  explicit Ball(const BallFlight& of)
+      : degree(2),
+        p(of.position),
+        v(of.velocity),
+        c(0.5 * of.acceleration),
+        start(of.start),
+        radius(of.radius),
+        error(0.0) {}
+
+  /// As the `Polynomial` has it.
+  [[nodiscard]] Vector3 at(double s) const {
+    return degree == 2 ? Vector3((c * s + v) * s + p) : degree == 1 ? Vector3(v * s + p) : p;
+  }
+};
+
+/// Local time of the ball's motion at the start of a window.
+double start_of(const Ball& ball, const Window& window) {
+  return window.start == ball.start ? 0.0 : window.start - ball.start;
+}
+
 /// Position and velocity of a parabola at local time s, and what they may be off by.
 struct Seen {
   Vector3 p, v;
   double e_p = 0.0, e_v = 0.0;
 };
 
-Seen seen(const Polynomial<3>& p, double s) {
-  if (p.degree() == 0) {
-    return {p[0], Vector3::Zero()};
+Seen seen(const Ball& of, double s) {
+  if (of.degree == 0 || s == 0.0) {
+    return {of.p, of.v};
   }
-  if (s == 0.0) {
-    return {p[0], p[1]};
-  }
-  const Vector3 c = p.degree() > 1 ? Vector3(p[2]) : Vector3(Vector3::Zero());
-  Seen at{p[0] + (p[1] + c * s) * s, p[1] + 2.0 * c * s};
-  at.e_p = 5.0 * u * (largest(p[0]) + (largest(p[1]) + largest(c) * std::abs(s)) * std::abs(s));
-  at.e_v = 3.0 * u * (largest(p[1]) + 2.0 * largest(c) * std::abs(s));
+  Seen at{of.p + (of.v + of.c * s) * s, of.v + 2.0 * of.c * s};
+  at.e_p = 5.0 * u * (largest(of.p) + (largest(of.v) + largest(of.c) * std::abs(s)) * std::abs(s));
+  at.e_v = 3.0 * u * (largest(of.v) + 2.0 * largest(of.c) * std::abs(s));
   return at;
 }
 
@@ -49,13 +82,12 @@ struct DistanceGap {
   double reach = 0.0;
   double e0 = 0.0, e1 = 0.0;  ///< |error| <= e0 + e1 t
 
-  DistanceGap(const MovingShape& a, const MovingShape& b, const Window& window) {
-    const Seen at_a = seen(a.motion.position, start_of(a.motion, window));
-    const Seen at_b = seen(b.motion.position, start_of(b.motion, window));
+  DistanceGap(const Ball& a, const Ball& b, const Window& window) {
+    const Seen at_a = seen(a, start_of(a, window));
+    const Seen at_b = seen(b, start_of(b, window));
     d = at_b.p - at_a.p;
     v = at_b.v - at_a.v;
-    reach = (std::get<Sphere>(a.shape).radius + std::get<Sphere>(b.shape).radius) +
-            (a.motion.error_radius + b.motion.error_radius);
+    reach = (a.radius + b.radius) + (a.error + b.error);
     e0 = 2.0 * (at_a.e_p + at_b.e_p) + 8.0 * u * (largest(d) + reach);
     e1 = 2.0 * (at_a.e_v + at_b.e_v) + 8.0 * u * largest(v);
   }
@@ -170,27 +202,76 @@ Vector3 direction(const Vector3& d) {
   return length > 0.0 ? Vector3(d / length) : Vector3(Vector3::UnitY());
 }
 
+/// See `touch_band`.
+double touch_of(const Ball& a, const Ball& b, double size) {
+  return 64.0 * u * (largest(a.p) + largest(b.p) + size);
+}
+
+/// `retreat` moves `t_lo` earlier until the balls do not overlap there as poses have it.
+template <typename Retreat>
+TimeOfImpact impact_of(const Ball& a, const Ball& b, const Window& window, const Retreat& retreat) {
+  const DistanceGap gap(a, b, window);
+  TimeOfImpact toi = descent_answer(first_descent(gap, touch_of(a, b, gap.reach)), window.duration);
+  if (toi.status == ToiStatus::separated) {
+    return toi;
+  }
+  retreat(toi);
+  const Vector3 at = gap.d + gap.v * toi.t_lo;
+  const Vector3 centre_a = a.at((window.start + toi.t_lo) - a.start);
+  toi.gap = std::max(0.0, at.norm() - gap.reach - gap.error(toi.t_lo));
+  toi.normal = direction(at);
+  toi.witness_a = centre_a + toi.normal * a.radius;
+  toi.witness_b = centre_a + toi.normal * (at.norm() - b.radius);
+  return toi;
+}
+
+/// Whether a query about this ball is one that `check_query` and `within_range` let pass, for sure:
+/// the sum of what its coordinates may come to is from above.
+bool is_ordinary(const Ball& ball, const Window& window) {
+  const double s0 = window.start - ball.start;
+  const double s = s0 + window.duration;
+  const double t = std::isfinite(s) ? s : 1.0;
+  const double size = (ball.c.lpNorm<1>() * t + ball.v.lpNorm<1>()) * t + ball.p.lpNorm<1>();
+  return s0 >= 0.0 && size <= greatest_size && ball.radius >= least_extent &&
+         ball.radius <= greatest_size;
+}
+
 }  // namespace
+
+std::optional<TimeOfImpact> sphere_sphere_impact(const BallFlight& of_a, const BallFlight& of_b,
+                                                 const Window& window) {
+  const Ball a(of_a);
+  const Ball b(of_b);
+  if (!(a.c == b.c) || !(window.duration >= 0.0) || !is_ordinary(a, window) ||
+      !is_ordinary(b, window)) {
+    return std::nullopt;
+  }
+  // `retreat_from_overlap`, without poses.
+  const auto retreat = [&](TimeOfImpact& toi) {
+    if (toi.status == ToiStatus::overlapping) {
+      return;
+    }
+    const double reach = a.radius + b.radius;
+    double back = ulp(toi.t_lo);
+    for (int attempt = 0; attempt < most_retreats && toi.t_lo > 0.0; ++attempt) {
+      const Instant t = window.start + toi.t_lo;
+      if (!((b.at(t - b.start) - a.at(t - a.start)).squaredNorm() <= reach * reach)) {
+        return;
+      }
+      toi.t_lo = std::max(0.0, toi.t_lo - back);
+      back *= 2.0;
+    }
+  };
+  return impact_of(a, b, window, retreat);
+}
 
 std::optional<TimeOfImpact> sphere_sphere_impact(const MovingShape& a, const MovingShape& b,
                                                  const Window& window) {
   if (!uniform(a, b)) {
     return std::nullopt;
   }
-  const DistanceGap gap(a, b, window);
-  const double touch = touch_band(a.motion, b.motion, gap.reach);
-  std::optional<TimeOfImpact> toi = descent_answer(first_descent(gap, touch), window.duration);
-  if (toi->status == ToiStatus::separated) {
-    return toi;
-  }
-  retreat_from_overlap(a, b, window, *toi);
-  const Vector3 at = gap.d + gap.v * toi->t_lo;
-  const Vector3 centre_a = a.motion.position(local_time(a.motion, window, toi->t_lo));
-  toi->gap = std::max(0.0, at.norm() - gap.reach - gap.error(toi->t_lo));
-  toi->normal = direction(at);
-  toi->witness_a = centre_a + toi->normal * std::get<Sphere>(a.shape).radius;
-  toi->witness_b = centre_a + toi->normal * (at.norm() - std::get<Sphere>(b.shape).radius);
-  return toi;
+  return impact_of(Ball(a), Ball(b), window,
+                   [&](TimeOfImpact& toi) { retreat_from_overlap(a, b, window, toi); });
 }
 
 std::optional<TimeOfImpact> sphere_sphere_separation(const MovingShape& a, const MovingShape& b,
@@ -198,7 +279,7 @@ std::optional<TimeOfImpact> sphere_sphere_separation(const MovingShape& a, const
   if (!uniform(a, b)) {
     return std::nullopt;
   }
-  const DistanceGap gap(a, b, window);
+  const DistanceGap gap(Ball(a), Ball(b), window);
   if (gap(0.0) > touch_band(a.motion, b.motion, gap.reach)) {
     return TimeOfImpact{};
   }

@@ -11,6 +11,11 @@ namespace kairos::ccd {
 [[nodiscard]] std::optional<TimeOfImpact> sphere_sphere_impact(const MovingShape& a,
                                                                const MovingShape& b,
                                                                const Window& window);
+/// The same of two balls that never end, bit for bit; also empty where a query might have to be
+/// refused.
+[[nodiscard]] std::optional<TimeOfImpact> sphere_sphere_impact(const BallFlight& a,
+                                                               const BallFlight& b,
+                                                               const Window& window);
 /// When the two part.
 [[nodiscard]] std::optional<TimeOfImpact> sphere_sphere_separation(const MovingShape& a,
                                                                    const MovingShape& b,

@@ -16,9 +16,15 @@ ContactManifold ContactDetector::manifold(const Shape& a, const Pose& pose_a, co
   return manifold;
 }
 
-void ContactDetector::clear_times(const BallFlight& /*one*/, std::span<const BallFlight> /*others*/,
-                                  double /*tolerance*/, std::span<double> clear) const {
-  std::fill(clear.begin(), clear.end(), 0.0);
+std::optional<TimeOfImpact> ContactDetector::ball_impact(const BallFlight& /*a*/,
+                                                         const BallFlight& /*b*/,
+                                                         const Window& /*window*/) const {
+  return std::nullopt;
+}
+
+void ContactDetector::clear_times(const FlightsBeside& balls, double /*tolerance*/,
+                                  std::span<double> clear) const {
+  std::fill_n(clear.begin(), balls.size(), 0.0);
 }
 
 }  // namespace core

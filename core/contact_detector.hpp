@@ -1,10 +1,12 @@
 #pragma once
 
+#include "core/ball_flight.hpp"
 #include "core/contact_manifold.hpp"
 #include "core/motion.hpp"
 #include "core/shape.hpp"
 #include "core/time_of_impact.hpp"
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,15 +24,6 @@ struct MovingShape {
 struct Window {
   Instant start;          ///< within both motions
   double duration = 0.0;  ///< s, >= 0; within both motions; may be infinite where both are
-};
-
-/// A ball on a parabola: its motion as far as it matters, where many are asked about.
-struct BallFlight {
-  Vector3 position = Vector3::Zero();      ///< at `start`, m
-  Vector3 velocity = Vector3::Zero();      ///< at `start`, m/s
-  Vector3 acceleration = Vector3::Zero();  ///< m/s^2
-  Instant start;
-  double radius = 0.0;  ///< error radius included, m
 };
 
 /// What a detector is, and what it can do.
@@ -67,11 +60,17 @@ class ContactDetector {
   [[nodiscard]] virtual TimeOfImpact time_of_impact(const MovingShape& a, const MovingShape& b,
                                                     const Window& window,
                                                     double tolerance) const = 0;
-  /// For each of the `others`, a time before which `time_of_impact` with the same tolerance finds
-  /// no contact with `one`: s after the later of their starts; infinite: never. Lower bounds, used
-  /// to leave queries out and in no answer; the default is 0.
-  virtual void clear_times(const BallFlight& one, std::span<const BallFlight> others,
-                           double tolerance, std::span<double> clear) const;
+  /// The same of two balls on parabolas without an error radius that never end, perhaps sooner;
+  /// nothing: `time_of_impact` has to be asked, as always by default.
+  [[nodiscard]] virtual std::optional<TimeOfImpact> ball_impact(const BallFlight& a,
+                                                                const BallFlight& b,
+                                                                const Window& window) const;
+  /// For each of these balls, a time before which `time_of_impact` with the same tolerance finds
+  /// no contact with the one: s after the later of their starts; infinite: never. Lower bounds,
+  /// used to leave queries out and in no answer; the default is 0. `clear` has room for all
+  /// blocks.
+  virtual void clear_times(const FlightsBeside& balls, double tolerance,
+                           std::span<double> clear) const;
   /// Two shapes that overlap at the start: when do they part? `impact` brackets the parting
   /// (still overlapping, or touching within tolerance, at t_lo; apart at t_hi); `overlapping`:
   /// not within the window; `separated`: apart at the start already. For fields.

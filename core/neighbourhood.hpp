@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/ball_flight.hpp"
 #include "core/broad_phase.hpp"
 #include "core/contact_detector.hpp"
 #include "core/instant.hpp"
@@ -8,6 +9,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -35,6 +37,12 @@ class Neighbourhood {
   /// Body i moves like this from t on, at least until `until`. Returns when it must cross at the
   /// latest; `Instant::never()`: what is told holds until then.
   virtual Instant enter(BodyIndex i, const MovingShape& moving, Instant t, Instant until) = 0;
+  /// The same where body i has the centre of this ball, exactly and for ever, and perhaps sooner;
+  /// nothing: that has to be asked, as always by default.
+  virtual std::optional<Instant> enter(BodyIndex /*i*/, const BallFlight& /*flight*/, Instant /*t*/,
+                                       Instant /*until*/) {
+    return std::nullopt;
+  }
   /// Every body that i could meet before it crosses, appended in any order; also all that touch it
   /// now. Some of them it cannot meet.
   virtual void near(BodyIndex i, std::vector<Neighbour>& out) = 0;
@@ -42,6 +50,11 @@ class Neighbourhood {
   /// that it could meet from here on and of which nobody was told, appended. Returns as `enter`.
   virtual Instant cross(BodyIndex i, const MovingShape& moving, Instant t, Instant until,
                         std::vector<Neighbour>& out) = 0;
+  /// The same as of `enter`.
+  virtual std::optional<Instant> cross(BodyIndex /*i*/, const BallFlight& /*flight*/, Instant /*t*/,
+                                       Instant /*until*/, std::vector<Neighbour>& /*out*/) {
+    return std::nullopt;
+  }
   /// Body i is counted on as its image n, on the motion that it has.
   virtual void go_on_as(BodyIndex i, const Image& n) = 0;
 

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace kairos::integrators {
@@ -67,6 +68,11 @@ class ClosedForm final : public MemorylessStepper {
   void restart(const Island& /*island*/, Instant /*t*/,
                std::span<const BodyState> /*states*/) override {
     fresh_ = true;
+  }
+
+  [[nodiscard]] std::optional<Vector3> fall(const Vector3& force, double mass) override {
+    ++evaluations_;
+    return force / mass;
   }
 
   StepResult step(const Island& island, Instant t, double h, std::span<BodyState> states) override {

@@ -12,8 +12,8 @@ struct InstructionSet {
   const char* name;
   bool here;  ///< whether this processor has it
 
-  void (*filter_balls)(const kairos::BallFlight& one, std::span<const kairos::BallFlight> others,
-                       double tolerance, std::span<double> clear);
+  void (*filter_balls)(const kairos::FlightsBeside& balls, double tolerance,
+                       std::span<double> clear);
   kairos::ccd::AxisSeparation (*greatest)(const kairos::ccd::RelativeBoxes& boxes);
   int (*verdicts)(const kairos::ccd::RelativeBoxes& boxes);  ///< of four questions, as digits
   void (*batch)(const std::vector<kairos::ccd::RelativeBoxes>& boxes,

@@ -13,9 +13,7 @@
 
 #include "ccd/ball_filter.cpp"
 #undef KAIROS_INLINE
-#define block batch_block
 #include "ccd/box_batch.cpp"
-#undef block
 #undef KAIROS_INLINE
 #include "ccd/box_separations.cpp"
 #include "tests/ccd/instruction_set.hpp"

@@ -87,21 +87,27 @@ TEST_CASE("balls are let through alike by registers of all widths", "[instructio
       other = random_flight(random, one);
     }
     const double tolerance = round % 2 == 0 ? 0.0 : 1e-9;
-    std::vector<double> expected(others.size());
-    std::vector<double> found(others.size());
-    all[0].filter_balls(one, others, tolerance, expected);
+    FlightsBeside beside;
+    beside.begin(one);
+    for (const BallFlight& other : others) {
+      beside.add(other);
+    }
+    std::vector<double> expected(beside.blocks().size() * FlightsBeside::block);
+    std::vector<double> found(expected.size());
+    all[0].filter_balls(beside, tolerance, expected);
+    expected.resize(others.size());
     for (const double clear : expected) {
       ++(clear < std::numeric_limits<double>::infinity() ? let_through : kept_out);
     }
     const auto compare = [&](const char* name) {
       INFO(name << ", round " << round);
-      REQUIRE(std::equal(found.begin(), found.end(), expected.begin(), same_double));
+      REQUIRE(std::equal(expected.begin(), expected.end(), found.begin(), same_double));
     };
     for (std::size_t k = 1; k < all.size(); ++k) {
-      all[k].filter_balls(one, others, tolerance, found);
+      all[k].filter_balls(beside, tolerance, found);
       compare(all[k].name);
     }
-    filter_balls(one, others, tolerance, found);
+    filter_balls(beside, tolerance, found);
     compare("as it is in the program");
   }
   // Both happen, or nothing has been compared.

@@ -43,6 +43,21 @@ State EventMotions::last_drawn() && {
   return std::move(now_);
 }
 
+/// `book` of a body on which nothing but the uniform force of the model acts, exactly; whether it
+/// was brought for that.
+bool EventMotions::book_plain(BodyIndex i, Instant t) {
+  Instant& until = booked_until_[run_.model.island_of(i)];
+  if (!(t - until > 0.0)) {
+    return false;
+  }
+  bring(i, t);
+  if (!run_.model.gravity_force(i).isZero(0.0)) {  // else no energy changed its form
+    run_.account.fallen(i, at(i, until), now_[i]);
+  }
+  until = t;
+  return true;
+}
+
 void EventMotions::book(Flow& flow, Instant t) {
   const Instant from = booked_until(flow);
   const double duration = t - from;

@@ -1,6 +1,7 @@
 #include "core/schemes/event/event_contacts.hpp"
 
 #include "core/archive.hpp"
+#include "core/contacts/group_law.hpp"
 #include "core/schemes/event/jump.hpp"
 
 #include <fmt/format.h>
@@ -25,6 +26,7 @@ EventContacts::EventContacts(EventRun& run, EventMotions& motions, EventPredicto
     : run_(run),
       motions_(motions),
       predictor_(predictor),
+      group_law_(dynamic_cast<const GroupLaw*>(&run.law)),
       accumulation_(run, motions),
       modes_(run, motions, predictor, accumulation_, graph, method.contact_stepper) {}
 
@@ -206,6 +208,9 @@ void EventContacts::look_again(BodyIndex a, BodyIndex b, Instant t, double brack
 /// Whether a ball comes to rest on a face, as its hop is too small to resolve; it is then
 /// supported.
 bool EventContacts::lands(BodyIndex a, BodyIndex b, const Contact& contact, Instant t) {
+  if (run_.model.is_free(a) && run_.model.is_free(b)) {
+    return false;
+  }
   const double e = run_.model.restitution(a, b);
   const double tolerance = accumulation_.rest_tolerance(a, b, e);
   for (const BodyIndex ball : {a, b}) {
@@ -266,13 +271,16 @@ bool EventContacts::leaves_for(BodyIndex ball, const Support& other, double tole
 }
 
 bool EventContacts::in_one_island(BodyIndex a, BodyIndex b) const {
-  return run_.model.is_free(a) && run_.model.is_free(b) &&
+  return !motions_.is_plain(a) && run_.model.is_free(a) && run_.model.is_free(b) &&
          run_.model.island_of(a) == run_.model.island_of(b);
 }
 
 /// Launches the islands of the two from `now`, where an impact has put them.
 void EventContacts::depart(BodyIndex a, BodyIndex b, Instant t) {
   for (const BodyIndex i : {a, b}) {
+    if (motions_.is_plain(i)) {
+      continue;
+    }
     // Bodies that joints hold together were struck together.
     if (joints_of(i) != nullptr) {
       part_jointed(i, t);
@@ -285,11 +293,13 @@ void EventContacts::depart(BodyIndex a, BodyIndex b, Instant t) {
     }
   }
   for (const BodyIndex i : {a, b}) {
-    if (!run_.model.is_free(i) || (i == b && in_one_island(a, b))) {
-      continue;
-    }
-    if (motions_.support(i)) {
-      resume_support(i, t);
+    if (!motions_.is_plain(i)) {
+      if (!run_.model.is_free(i) || (i == b && in_one_island(a, b))) {
+        continue;
+      }
+      if (motions_.support(i)) {
+        resume_support(i, t);
+      }
     }
     motions_.launch(i, t);
   }
@@ -298,6 +308,10 @@ void EventContacts::depart(BodyIndex a, BodyIndex b, Instant t) {
 void EventContacts::relaunch(BodyIndex a, BodyIndex b, Instant t) {
   depart(a, b, t);
   for (const BodyIndex i : {a, b}) {
+    if (motions_.is_plain(i)) {
+      predictor_.predict(i, t, i == b && run_.model.is_free(a) ? a : i);
+      continue;
+    }
     if (!run_.model.is_free(i) || (i == b && in_one_island(a, b))) {
       continue;
     }

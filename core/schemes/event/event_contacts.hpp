@@ -13,6 +13,8 @@
 namespace kairos {
 inline namespace core {
 
+class GroupLaw;
+
 /// What happens when two bodies meet, come to rest on each other, part, or cross a field. Each of
 /// these launches who is concerned and predicts what they meet next.
 class EventContacts {
@@ -92,6 +94,7 @@ class EventContacts {
   EventRun& run_;
   EventMotions& motions_;
   EventPredictor& predictor_;
+  const GroupLaw* group_law_;  ///< the impact law, if it takes groups; else null
   EventAccumulation accumulation_;
   EventModes modes_;
   /// Balls that a face supports, or has: few of many.

@@ -305,7 +305,7 @@ void EventContacts::return_as_struck(const EventModes::GroupImpact& impact,
 /// Strikes all bodies of a group at once, if the impact law takes groups; false if it does not, or
 /// there is no group.
 bool EventContacts::strike_group(const BodyPair& pair, double approach, Instant t) {
-  const auto* law = dynamic_cast<const GroupLaw*>(&run_.law);
+  const GroupLaw* const law = group_law_;
   if (joints_of(pair.first) != nullptr || joints_of(pair.second) != nullptr) {
     return false;
   }

@@ -97,6 +97,9 @@ struct JointedContact {
 }  // namespace
 
 const JointSystem* EventContacts::joints_of(BodyIndex i) const {
+  if (run_.model.scene().joints.empty()) {
+    return nullptr;
+  }
   return run_.model.is_free(i) ? run_.model.islands()[run_.model.island_of(i)].joints : nullptr;
 }
 

@@ -3,7 +3,6 @@
 #include "core/archive.hpp"
 #include "core/joint_system.hpp"
 #include "core/large_pages.hpp"
-#include "core/memoryless_stepper.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -17,8 +16,8 @@ inline namespace core {
 
 namespace {
 
-bool is_memoryless(const Stepper& stepper) {
-  return dynamic_cast<const MemorylessStepper*>(&stepper) != nullptr;
+MemorylessStepper* as_memoryless(Stepper& stepper) {
+  return dynamic_cast<MemorylessStepper*>(&stepper);
 }
 
 }  // namespace
@@ -29,7 +28,7 @@ EventMotions::EventMotions(EventRun& run, const Method& method)
       table_(run.model),
       ties_(run.model.size()),
       riders_(run.model.size(), 0),
-      flies_(run.model.size(), 0),
+      ways_(run.model.size(), 0),
       flows_(run.model.islands().size()),
       shares_(run.model.islands().size(), 0),
       booked_until_(run.model.islands().size()),
@@ -73,7 +72,8 @@ bool EventMotions::may_share(std::size_t island) {
   }
   if (shared_ == nullptr) {
     auto flow = make_flow(island);
-    if (!is_memoryless(*flow->stepper)) {
+    falling_ = as_memoryless(*flow->stepper);
+    if (falling_ == nullptr) {
       return false;
     }
     flow->stepper->start(flow->island, run_.time, flow->states);
@@ -82,7 +82,8 @@ bool EventMotions::may_share(std::size_t island) {
     return true;
   }
   const std::unique_ptr<Stepper> stepper = method_.stepper(run_.model, island);
-  return is_memoryless(*stepper) && stepper->info().name == shared_->stepper->info().name;
+  return as_memoryless(*stepper) != nullptr &&
+         stepper->info().name == shared_->stepper->info().name;
 }
 
 EventMotions::Flow& EventMotions::flow_of(BodyIndex i) {
@@ -101,6 +102,7 @@ EventMotions::Flow& EventMotions::flow_of(BodyIndex i) {
 EventMotions::Flow& EventMotions::own_flow(BodyIndex i) {
   const std::size_t k = run_.model.island_of(i);
   if (flows_[k] == nullptr) {
+    ways_[i] &= ~untied_bit;
     flows_[k] = make_flow(k);
     Flow& flow = *flows_[k];
     flow.states[0] = flow.booked[0] = at(i, booked_until_[k]);
@@ -125,6 +127,7 @@ EventMotions::Flow& EventMotions::flow_to_launch(BodyIndex i) {
 }
 
 EventMotions::Ties& EventMotions::tie(BodyIndex i) {
+  ways_[i] &= ~untied_bit;
   if (ties_[i] == nullptr) {
     ties_[i] = std::make_unique<Ties>();
   }
@@ -186,6 +189,12 @@ void EventMotions::open(BodyIndex i, Instant t) {
 
 void EventMotions::open_pair(BodyIndex a, BodyIndex b, Instant t) {
   for (const BodyIndex i : {a, b}) {
+    if (is_plain(i)) {
+      if (!book_plain(i, t)) {
+        bring(i, t);
+      }
+      continue;
+    }
     if (run_.model.is_free(i)) {
       book(i, t);
     }
@@ -197,19 +206,21 @@ void EventMotions::open_pair(BodyIndex a, BodyIndex b, Instant t) {
 
 /// A step that was left out before a launch would give a wrong ledger or a wrong motion, and no
 /// error.
-void EventMotions::check_ready([[maybe_unused]] const Flow& flow,
-                               [[maybe_unused]] Instant t) const {
-  assert(!(booked_until(flow) < t));
-  assert(std::all_of(flow.island.bodies.begin(), flow.island.bodies.end(),
+void EventMotions::check_ready([[maybe_unused]] BodyIndex first, [[maybe_unused]] Instant t) const {
+  assert(!(booked_until_[run_.model.island_of(first)] < t));
+  assert(std::all_of(island(first).begin(), island(first).end(),
                      [&](BodyIndex k) { return run_.jumps.is_brought(k, t); }));
 }
 
 void EventMotions::launch(BodyIndex i, Instant t) {
+  if (is_plain(i) && launch_plain(i, t)) {
+    return;
+  }
   for (const BodyIndex k : island(i)) {
     forget_surface_forces(k);
   }
   Flow& flow = flow_to_launch(i);
-  check_ready(flow, t);
+  check_ready(i, t);
   flow.held = false;
   set_forces(flow);
   if (flow.island.joints != nullptr) {
@@ -218,6 +229,34 @@ void EventMotions::launch(BodyIndex i, Instant t) {
   flow.gather(now_);
   flow.stepper->restart(flow.island, t, flow.states);
   next_segment(flow, t);
+}
+
+/// `launch` of a body of which its flight says all, without a motion in between; false where that
+/// is not enough.
+bool EventMotions::launch_plain(BodyIndex i, Instant t) {
+  if (run_.wants_motions) {
+    return false;
+  }
+  if (!table_.goes_on_as_parabola(i, now_[i])) {
+    return false;
+  }
+  const auto acceleration = falling_->fall(run_.model.gravity_force(i) + Vector3(Vector3::Zero()),
+                                           run_.model.inertia(i).mass);
+  if (!acceleration) {
+    return false;
+  }
+  check_ready(i, t);
+  table_.keep_parabola(i, now_[i], *acceleration, t);
+  if ((ways_[i] & usual_bit) != 0 && !table_.is_usual(i)) {
+    ways_[i] &= ~usual_bit;
+  }
+  booked_until_[run_.model.island_of(i)] = t;
+  ++run_.cost.steps;
+  run_.agenda.renew(i);
+  if constexpr (watches_jumps) {
+    run_.jumps.launched(i);
+  }
+  return true;
 }
 
 void EventMotions::put_onto_joints(BodyIndex i, Instant t) {
@@ -235,7 +274,7 @@ void EventMotions::put_onto_joints(BodyIndex i, Instant t) {
 
 void EventMotions::rest(BodyIndex i, Instant t) {
   Flow& flow = flow_of(i);
-  check_ready(flow, t);
+  check_ready(i, t);
   flow.held = true;
   for (std::size_t k = 0; k < flow.states.size(); ++k) {
     const BodyIndex body = flow.island.bodies[k];
@@ -262,7 +301,7 @@ void EventMotions::turn(BodyIndex i, Instant t, const Turn& turn) {
 
 void EventMotions::hold(BodyIndex i, Instant t, const Twist& acceleration) {
   Flow& flow = own_flow(i);
-  check_ready(flow, t);
+  check_ready(i, t);
   flow.held = true;
   set_support(i, std::nullopt);
   forget_surface_forces(i);
@@ -353,9 +392,17 @@ void EventMotions::drive(BodyIndex i, Instant t) {
 
 void EventMotions::keep_motion(BodyIndex i, const Motion& motion) {
   table_.keep(i, motion);
-  flies_[i] = static_cast<char>(
-      motion.position.degree() <= 2 && std::holds_alternative<Sphere>(run_.model.shape(i)) &&
-      run_.model.is_free(i) && !support(i) && std::isinf(motion.duration));
+  ways_[i] = 0;
+  if (motion.position.degree() > 2 || !std::holds_alternative<Sphere>(run_.model.shape(i)) ||
+      !run_.model.is_free(i) || support(i) || !std::isinf(motion.duration)) {
+    return;
+  }
+  const std::size_t k = run_.model.island_of(i);
+  const bool untied = shares_[k] != 0 && !run_.model.is_field(i) && flows_[k] == nullptr &&
+                      !ties(i).any() && ties(i).field_force.isZero(0.0);
+  ways_[i] =
+      static_cast<std::uint8_t>(flies_bit | (table_.is_parabola(i) ? parabola_bit : 0) |
+                                (untied ? untied_bit : 0) | (table_.is_usual(i) ? usual_bit : 0));
 }
 
 void EventMotions::set_motion(BodyIndex i, const Motion& motion) {
@@ -471,6 +518,9 @@ bool EventMotions::is_in_field(BodyIndex i, BodyIndex field) const {
 
 Vector3 EventMotions::field_forces_at(BodyIndex i) const {
   Vector3 sum = Vector3::Zero();
+  if (is_plain(i)) {
+    return sum;
+  }
   for (const BodyIndex field : ties(i).fields) {
     sum += field_force(run_.model, field, now_[field], i);
   }
@@ -507,7 +557,7 @@ double EventMotions::pressing(BodyIndex ball, const Support& support, Instant t,
 }
 
 bool EventMotions::is_damped(BodyIndex i) const {
-  if (!run_.model.is_free(i)) {
+  if (is_plain(i) || !run_.model.is_free(i)) {
     return false;
   }
   const auto& forces = run_.model.islands()[run_.model.island_of(i)].forces;

@@ -1,11 +1,13 @@
 #pragma once
 
+#include "core/memoryless_stepper.hpp"
 #include "core/schemes/event/event_run.hpp"
 #include "core/schemes/event/motion_table.hpp"
 #include "core/schemes/shared/island_run.hpp"
 #include "core/schemes/shared/support.hpp"
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -27,19 +29,37 @@ class EventMotions {
   void begin();
 
   [[nodiscard]] Motion of(BodyIndex i) const { return table_.of(i); }
-  [[nodiscard]] Instant start_of(BodyIndex i) const { return table_.start(i); }
-  [[nodiscard]] double duration_of(BodyIndex i) const { return table_.duration(i); }
-  [[nodiscard]] Instant end_of(BodyIndex i) const { return table_.end(i); }
+  [[nodiscard]] Instant start_of(BodyIndex i) const {
+    return flies_parabola(i) ? table_.start_of_flight(i) : table_.start(i);
+  }
+  [[nodiscard]] double duration_of(BodyIndex i) const {
+    return flies_parabola(i) ? std::numeric_limits<double>::infinity() : table_.duration(i);
+  }
+  [[nodiscard]] Instant end_of(BodyIndex i) const { return start_of(i) + duration_of(i); }
   /// A shape with the motion that it has, for as long as this lives.
   [[nodiscard]] MotionTable::Moving moving(BodyIndex i) const { return table_.moving(i); }
   /// Whether its flight is all there is to know of the motion of i.
-  [[nodiscard]] bool is_flight(BodyIndex i) const { return table_.is_flight(i); }
+  [[nodiscard]] bool is_flight(BodyIndex i) const {
+    return flies_parabola(i) || table_.is_flight(i);
+  }
   /// Whether i is a ball on a parabola until it is launched again, and held by nothing.
-  [[nodiscard]] bool flies(BodyIndex i) const { return flies_[i] != 0; }
+  [[nodiscard]] bool flies(BodyIndex i) const { return (ways_[i] & flies_bit) != 0; }
+  /// Whether besides its flight says all of its motion, as a parabola, and it is upright.
+  [[nodiscard]] bool flies_parabola(BodyIndex i) const {
+    return (ways_[i] & (flies_bit | parabola_bit)) == (flies_bit | parabola_bit);
+  }
+  /// Whether besides nothing ties it, and it is alone in its island: all that most of a gas is.
+  [[nodiscard]] bool is_plain(BodyIndex i) const { return (ways_[i] & all_bits) == all_bits; }
   /// The ball that bounds body i, on its way; its radius is infinite if it is on no parabola, or
   /// the body is unbounded.
-  [[nodiscard]] const BallFlight& flight(BodyIndex i) const { return table_.flight(i); }
-  [[nodiscard]] BodyState at(BodyIndex i, Instant t) const { return table_.at(i, t); }
+  [[nodiscard]] BallFlight flight(BodyIndex i) const {
+    return (ways_[i] & usual_bit) != 0 ? table_.usual_flight(i) : table_.flight(i);
+  }
+  /// That is about to be asked for.
+  void look_up(BodyIndex i) const { table_.look_up(i); }
+  [[nodiscard]] BodyState at(BodyIndex i, Instant t) const {
+    return flies_parabola(i) ? fallen(flight(i), t) : table_.at(i, t);
+  }
   /// Scratch of the event at hand, by body: an event brings a state here, changes it, and launches
   /// the body from it. Meaningless otherwise, except for fixed bodies.
   [[nodiscard]] BodyState& now(BodyIndex i) { return now_[i]; }
@@ -150,7 +170,13 @@ class EventMotions {
   [[nodiscard]] Wrench acting(BodyIndex i, Instant t, const BodyState& state) const;
 
   /// The ledger follows the island of i up to t; `now` is then the state there.
-  void book(BodyIndex i, Instant t) { book(flow_of(i), t); }
+  void book(BodyIndex i, Instant t) {
+    if (is_plain(i)) {
+      (void)book_plain(i, t);
+    } else {
+      book(flow_of(i), t);
+    }
+  }
   void book_all(Instant t);
   /// The states of all bodies at t, as they are told; until `end_drawing`, before the next event.
   [[nodiscard]] const State& draw(Instant t);
@@ -195,6 +221,15 @@ class EventMotions {
     void persist(Archive& archive);
   };
 
+  /// Horner, as `Polynomial` does it.
+  static BodyState fallen(const BallFlight& flight, Instant t) {
+    const double s = t - flight.start;
+    const Vector3& a = flight.acceleration;
+    return {{(0.5 * a * s + flight.velocity) * s + flight.position, Quaternion(1.0, 0.0, 0.0, 0.0)},
+            {a * s + flight.velocity, Vector3::Zero()}};
+  }
+  bool book_plain(BodyIndex i, Instant t);
+  [[nodiscard]] bool launch_plain(BodyIndex i, Instant t);
   void next_segment(Flow& flow, Instant t);
   void drive(BodyIndex i, Instant t);
   void set_motion(BodyIndex i, const Motion& motion);
@@ -235,7 +270,7 @@ class EventMotions {
       run_.jumps.brought(i, t, now_[i]);
     }
   }
-  void check_ready(const Flow& flow, Instant t) const;
+  void check_ready(BodyIndex first, Instant t) const;
 
   EventRun& run_;
   const Method& method_;
@@ -243,13 +278,20 @@ class EventMotions {
   const Ties no_ties_{};
   std::vector<std::unique_ptr<Ties>> ties_;  ///< null: none
   std::vector<std::uint32_t> riders_;        ///< by surface
-  std::vector<char> flies_;
+  /// What is true of a body's motion, for `flies`, `flies_parabola` and `is_plain`.
+  static constexpr std::uint8_t flies_bit = 1;
+  static constexpr std::uint8_t parabola_bit = 2;
+  static constexpr std::uint8_t untied_bit = 4;  ///< and it is no field
+  static constexpr std::uint8_t usual_bit = 8;   ///< see `MotionTable`
+  static constexpr std::uint8_t all_bits = flies_bit | parabola_bit | untied_bit;
+  std::vector<std::uint8_t> ways_;
   std::vector<std::unique_ptr<Flow>> flows_;  ///< by island; null: it shares one
   std::vector<char> shares_;                  ///< by island: whether it may
   std::unique_ptr<Flow>
       shared_;  ///< of one body that falls freely, whichever it is now; null: none
-  std::vector<Instant> booked_until_;  ///< by island: how far the ledger has followed it
-  std::int64_t evaluations_ = 0;       ///< of flows that are no more
+  MemorylessStepper* falling_ = nullptr;  ///< its stepper
+  std::vector<Instant> booked_until_;     ///< by island: how far the ledger has followed it
+  std::int64_t evaluations_ = 0;          ///< of flows that are no more
   State now_;
   std::vector<BodyIndex> led_;  ///< bodies that are not free
   State aside_;                 ///< of these, what is not `now`: as they were drawn last

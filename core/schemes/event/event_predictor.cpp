@@ -5,9 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <span>
+#include <optional>
 
 namespace kairos {
 inline namespace core {
@@ -60,7 +61,14 @@ void EventPredictor::cross(BodyIndex i, Instant t) {
     return;  // no body crosses here, but a forged checkpoint may say so
   }
   neighbours_.clear();
-  run_.agenda.cross(i, neighbourhood_->cross(i, motions_.moving(i), t, last_of(i), neighbours_));
+  std::optional<Instant> next;
+  if (motions_.flies_parabola(i)) {
+    next = neighbourhood_->cross(i, motions_.flight(i), t, last_of(i), neighbours_);
+  }
+  if (!next) {
+    next = neighbourhood_->cross(i, motions_.moving(i), t, last_of(i), neighbours_);
+  }
+  run_.agenda.cross(i, *next);
   survey(i, t);
   run_.agenda.file(i);
 }
@@ -76,7 +84,14 @@ void EventPredictor::renew(BodyIndex i, Instant t) {
 }
 
 void EventPredictor::enter(BodyIndex i, Instant t) {
-  run_.agenda.cross(i, neighbourhood_->enter(i, motions_.moving(i), t, last_of(i)));
+  std::optional<Instant> next;
+  if (motions_.flies_parabola(i)) {
+    next = neighbourhood_->enter(i, motions_.flight(i), t, last_of(i));
+  }
+  if (!next) {
+    next = neighbourhood_->enter(i, motions_.moving(i), t, last_of(i));
+  }
+  run_.agenda.cross(i, *next);
 }
 
 void EventPredictor::predict_all(Instant t) {
@@ -112,42 +127,53 @@ void EventPredictor::predict_all(Instant t) {
 
 /// Asks when i meets each of `neighbours_`.
 void EventPredictor::survey(BodyIndex i, Instant known) {
-  std::size_t balls = 0;
   const bool flies = motions_.flies(i);
-  if (flies && balls_.size() < neighbours_.size()) {
-    balls_.resize(neighbours_.size());
-    flights_.resize(neighbours_.size());
-    clear_.resize(neighbours_.size());
-  }
   const bool periodic = run_.model.scene().periodic.has_value();
+  balls_.clear();
+  if (flies) {
+    own_ = motions_.flight(i);
+    beside_.begin(own_);
+    for (const Neighbour& j : neighbours_) {
+      motions_.look_up(j.body);
+    }
+  }
+  const bool meets_plain = motions_.is_plain(i) && run_.model.scene().joints.empty();
   for (const Neighbour& j : neighbours_) {
-    if (!run_.model.interacts(i, j.body)) {
+    const bool meets = meets_plain && motions_.is_plain(j.body) && j.body != i;
+    if (!meets && !run_.model.interacts(i, j.body)) {
       continue;
     }
     if (!flies || !motions_.flies(j.body)) {
       predict_near(i, j, known);
       continue;
     }
-    balls_[balls] = j;
-    flights_[balls] = motions_.flight(j.body);
-    if (periodic) {
-      move_to(j.image, flights_[balls]);
+    balls_.push_back(j);
+    if (periodic && !is_zero(j.image)) {
+      BallFlight image = motions_.flight(j.body);
+      move_to(j.image, image);
+      beside_.add(image);
+    } else {
+      beside_.add(motions_.flight(j.body));
     }
-    ++balls;
   }
-  meet_balls(i, balls, known);
+  if (!balls_.empty()) {
+    meet_balls(i, known);
+  }
 }
 
-/// Asks about the first `balls` of `balls_`, earliest possible meeting first, and ends when no
-/// other can be earlier: body i is asked again when its earliest meeting comes up.
-void EventPredictor::meet_balls(BodyIndex i, std::size_t balls, Instant known) {
-  const BallFlight& own = motions_.flight(i);
-  run_.detector.clear_times(own, std::span(flights_).first(balls), run_.options.toi_tolerance,
-                            std::span(clear_).first(balls));
+/// Asks about `balls_`, earliest possible meeting first, and ends when no other can be earlier:
+/// body i is asked again when its earliest meeting comes up.
+void EventPredictor::meet_balls(BodyIndex i, Instant known) {
+  const Instant start = motions_.start_of(i);
+  if (clear_.size() < beside_.blocks().size() * FlightsBeside::block) {
+    clear_.resize(beside_.blocks().size() * FlightsBeside::block);
+  }
+  run_.detector.clear_times(beside_, run_.options.toi_tolerance, clear_);
   near_.clear();
-  for (std::size_t k = 0; k < balls; ++k) {
+  for (std::size_t k = 0; k < balls_.size(); ++k) {
     if (clear_[k] < std::numeric_limits<double>::infinity()) {
-      near_.push_back({balls_[k], std::max(own.start, flights_[k].start) + clear_[k]});
+      const Instant later = std::max(start, motions_.start_of(balls_[k].body));
+      near_.push_back({balls_[k], later + clear_[k]});
     }
   }
   while (!near_.empty()) {
@@ -177,19 +203,21 @@ void EventPredictor::move_to(const Image& n, BallFlight& flight) const {
 
 /// Whether the balls that bound the two stay apart for the whole query. A body that tumbles is
 /// asked about anew with each segment of its rotation, and is far from most others.
-bool EventPredictor::stay_clear(const PairQuery& of) const {
+bool EventPredictor::stay_clear(const PairQuery& of) {
   if (!neighbourhood_ || (motions_.flies(of.a) && motions_.flies(of.b))) {
     return false;  // not worth it for few bodies; done already for two balls
   }
-  const BallFlight& a = motions_.flight(of.a);
+  const BallFlight a = motions_.flight(of.a);
   BallFlight b = motions_.flight(of.b);
   if (!std::isfinite(a.radius + b.radius)) {
     return false;
   }
   move_to(of.image, b);
-  double clear = 0.0;
-  run_.detector.clear_times(a, {&b, 1}, run_.options.toi_tolerance, {&clear, 1});
-  return std::max(a.start, b.start) + clear > of.from + of.duration;
+  pair_.begin(a);
+  pair_.add(b);
+  std::array<double, FlightsBeside::block> clear{};
+  run_.detector.clear_times(pair_, run_.options.toi_tolerance, clear);
+  return std::max(a.start, b.start) + clear[0] > of.from + of.duration;
 }
 
 /// Whether body i keeps only its earliest meeting, among those with bodies like `with`.
@@ -250,7 +278,11 @@ void EventPredictor::ask(BodyIndex i, const Neighbour& other, Instant from, Inst
   if (!leaving && grasps_.involve(a, b)) {
     return;
   }
-  if (motions_.is_supported_by(a, b) || motions_.is_supported_by(b, a) || graph_.joins(a, b)) {
+  const bool untied = motions_.is_plain(a) && motions_.is_plain(b);
+  if (!untied && (motions_.is_supported_by(a, b) || motions_.is_supported_by(b, a))) {
+    return;
+  }
+  if (graph_.joins(a, b)) {
     return;
   }
   double duration = std::min({motions_.end_of(a), motions_.end_of(b), run_.epoch_end()}) - from;
@@ -266,7 +298,7 @@ void EventPredictor::ask(BodyIndex i, const Neighbour& other, Instant from, Inst
       a, b, from, duration, known, keeps_meeting(i, j), i, in_order ? other.image : -other.image};
   if (leaving) {
     predict_parting(query, DueKind::clear_of_hand);
-  } else if (motions_.is_in_field(a, b) || motions_.is_in_field(b, a)) {
+  } else if (!untied && (motions_.is_in_field(a, b) || motions_.is_in_field(b, a))) {
     predict_parting(query, DueKind::field_left);
   } else if (!stay_clear(query)) {
     predict_meeting(query);
@@ -308,6 +340,12 @@ Motion EventPredictor::motion_of(BodyIndex i, const PairQuery& of) const {
 TimeOfImpact EventPredictor::time_of_impact(const PairQuery& of, double duration) {
   const Window window{of.from, duration};
   if (!is_imaged(of)) {
+    if (motions_.flies_parabola(of.a) && motions_.flies_parabola(of.b)) {
+      if (const auto toi =
+              run_.detector.ball_impact(motions_.flight(of.a), motions_.flight(of.b), window)) {
+        return counted(*toi);
+      }
+    }
     return counted(run_.detector.time_of_impact(motions_.moving(of.a), motions_.moving(of.b),
                                                 window, run_.options.toi_tolerance));
   }
@@ -331,7 +369,7 @@ double EventPredictor::allowed_gap(const PairQuery& of) const {
 /// The largest coordinate that body i reaches in an epoch or before its motion ends, m.
 double EventPredictor::coordinates_reached(BodyIndex i) const {
   if (motions_.is_flight(i)) {
-    const BallFlight& flight = motions_.flight(i);
+    const BallFlight flight = motions_.flight(i);
     return (0.5 * flight.acceleration.lpNorm<Eigen::Infinity>() * run_.epoch() +
             flight.velocity.lpNorm<Eigen::Infinity>()) *
                run_.epoch() +

@@ -81,7 +81,7 @@ class EventPredictor {
   void enter(BodyIndex i, Instant t);
   void predict_near(BodyIndex i, const Neighbour& j, Instant known = before_all);
   void survey(BodyIndex i, Instant known);
-  void meet_balls(BodyIndex i, std::size_t balls, Instant known);
+  void meet_balls(BodyIndex i, Instant known);
   [[nodiscard]] bool keeps_meeting(BodyIndex i, BodyIndex with) const;
   void ask(BodyIndex i, const Neighbour& j, Instant from, Instant known);
   void push(const PairQuery& of, double after, DueKind kind, double bracket = 0.0,
@@ -91,7 +91,7 @@ class EventPredictor {
     return run_.model.scene().periodic && !is_zero(of.image);
   }
   void move_to(const Image& n, BallFlight& flight) const;
-  [[nodiscard]] bool stay_clear(const PairQuery& of) const;
+  [[nodiscard]] bool stay_clear(const PairQuery& of);
   void predict_meeting(const PairQuery& query);
   [[nodiscard]] TimeOfImpact time_of_impact(const PairQuery& of, double duration);
   [[nodiscard]] Motion motion_of(BodyIndex i, const PairQuery& of) const;
@@ -115,9 +115,11 @@ class EventPredictor {
   std::vector<std::vector<BodyIndex>> partners_;
   std::vector<Instant> since_;         ///< by body: from when on its pairs are asked
   std::vector<Neighbour> neighbours_;  ///< scratch, as what follows
-  std::vector<Neighbour> balls_;       ///< with what follows, as long as it has had to be
-  std::vector<BallFlight> flights_;
-  std::vector<double> clear_;
+  std::vector<Neighbour> balls_;
+  BallFlight own_;
+  FlightsBeside beside_;  ///< that
+  FlightsBeside pair_;
+  std::vector<double> clear_;  ///< as long as it has had to be
   std::vector<Near> near_;
 };
 

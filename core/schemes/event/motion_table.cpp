@@ -24,6 +24,10 @@ bool same_bits(const Vector4& x, const Quaternion& q) {
   return same_bits(x[0], q.w()) && same_bits(x[1], q.x()) && same_bits(x[2], q.y()) &&
          same_bits(x[3], q.z());
 }
+bool same_bits(const Quaternion& p, const Quaternion& q) {
+  return same_bits(p.w(), q.w()) && same_bits(p.x(), q.x()) && same_bits(p.y(), q.y()) &&
+         same_bits(p.z(), q.z());
+}
 bool is_positive_zero(const Vector3& x) { return same_bits(x, Vector3(0.0, 0.0, 0.0)); }
 
 Vector3 coefficient(const Polynomial<3>& p, int k) {
@@ -34,29 +38,43 @@ Vector3 coefficient(const Polynomial<3>& p, int k) {
 
 MotionTable::MotionTable(const Model& model)
     : model_(model),
-      flights_(scattered<BallFlight>(model.size())),
+      throws_(scattered<Throw>(model.size())),
+      falls_(model.size()),
       forms_(model.size()),
       place_(model.size(), nowhere),
-      whole_(model.size() <= few ? model.size() : 0) {
-  for (BallFlight& flight : flights_) {
-    flight.radius = infinity;
-  }
-}
+      whole_(model.size() <= few ? model.size() : 0) {}
 
 void MotionTable::keep(BodyIndex i, const Motion& motion) {
   set_flight(i, motion);
+  forms_[i] = form_of(i, motion);
   if (!whole_.empty()) {
-    forms_[i].is_flight = false;
     whole_[i] = motion;
     return;
   }
-  forms_[i] = form_of(i, motion);
   if (!forms_[i].is_flight) {
     store(i, motion);
   } else if (place_[i] != nowhere) {
     free_.push_back(place_[i]);
     place_[i] = nowhere;
   }
+}
+
+bool MotionTable::goes_on_as_parabola(BodyIndex i, const BodyState& state) const {
+  return whole_.empty() && is_parabola(i) &&
+         same_bits(state.pose.orientation, Quaternion(1.0, 0.0, 0.0, 0.0));
+}
+
+void MotionTable::keep_parabola(BodyIndex i, const BodyState& state, const Vector3& acceleration,
+                                Instant t) {
+  throws_[i] = {state.pose.position, state.twist.linear, t};
+  if (!same_bits(falls_[i].acceleration, acceleration)) {
+    falls_[i].acceleration = acceleration;
+  }
+}
+
+bool MotionTable::is_usual(BodyIndex i) const {
+  return same_bits(falls_[i].acceleration, usual_.acceleration) &&
+         same_bits(falls_[i].radius, usual_.radius);
 }
 
 void MotionTable::store(BodyIndex i, const Motion& motion) {
@@ -71,17 +89,20 @@ void MotionTable::store(BodyIndex i, const Motion& motion) {
 }
 
 void MotionTable::set_flight(BodyIndex i, const Motion& motion) {
-  BallFlight& flight = flights_[i];
+  Fall& falls = falls_[i];
   if (motion.position.degree() > 2) {
-    flight.radius = infinity;
+    falls.radius = infinity;
     return;
   }
   const Shape& shape = model_.shape(i);
   // What is no ball may touch by what a detector leaves and its bounding ball, rounded, does not.
   const double more = std::holds_alternative<Sphere>(shape) ? 1.0 : 1.0 + 0x1p-20;
-  flight = {coefficient(motion.position, 0), coefficient(motion.position, 1),
-            2.0 * coefficient(motion.position, 2), motion.start,
-            more * bounding_radius(shape) + motion.error_radius};
+  throws_[i] = {coefficient(motion.position, 0), coefficient(motion.position, 1), motion.start};
+  falls = {2.0 * coefficient(motion.position, 2),
+           more * bounding_radius(shape) + motion.error_radius};
+  if (usual_.radius == infinity && model_.is_free(i) && std::holds_alternative<Sphere>(shape)) {
+    usual_ = falls;
+  }
 }
 
 /// Whether its flight says all of a motion, every bit of it, and how.
@@ -92,7 +113,7 @@ MotionTable::Form MotionTable::form_of(BodyIndex i, const Motion& motion) const 
       motion.quaternion.degree() > 0 || motion.angular_velocity.degree() > 0) {
     return form;
   }
-  const BallFlight& flight = flights_[i];
+  const BallFlight flight = this->flight(i);
   form.position = static_cast<std::uint8_t>(motion.position.degree());
   form.velocity = static_cast<std::uint8_t>(motion.velocity.degree());
   form.upright = same_bits(motion.quaternion[0], Quaternion(1.0, 0.0, 0.0, 0.0));
@@ -121,7 +142,7 @@ void MotionTable::make(BodyIndex i, Motion& out) const {
     out = others_[place_[i]].motion();
     return;
   }
-  const BallFlight& flight = flights_[i];
+  const BallFlight flight = this->flight(i);
   const Form form = forms_[i];
   out.start = flight.start;
   out.duration = infinity;
@@ -155,7 +176,7 @@ BodyState MotionTable::at(BodyIndex i, Instant t) const {
     return motion.at(std::min(t - motion.start(), motion.duration()));
   }
   // Horner, as `Polynomial` does it.
-  const BallFlight& flight = flights_[i];
+  const BallFlight flight = this->flight(i);
   const Form form = forms_[i];
   const double s = t - flight.start;
   Vector3 p = flight.position;

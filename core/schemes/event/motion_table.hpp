@@ -23,10 +23,16 @@ class MotionTable {
   /// Body i moves like this from now on.
   void keep(BodyIndex i, const Motion& motion);
 
+  /// Whether its flight would say all of the motion of body i, as it does now, if it went on along
+  /// a parabola from `state`.
+  [[nodiscard]] bool goes_on_as_parabola(BodyIndex i, const BodyState& state) const;
+  /// It does so from now on.
+  void keep_parabola(BodyIndex i, const BodyState& state, const Vector3& acceleration, Instant t);
+
   [[nodiscard]] Motion of(BodyIndex i) const;
   [[nodiscard]] Instant start(BodyIndex i) const {
     return !whole_.empty() ? whole_[i].start
-           : is_flight(i)  ? flights_[i].start
+           : is_flight(i)  ? throws_[i].start
                            : others_[place_[i]].start();
   }
   [[nodiscard]] double duration(BodyIndex i) const {
@@ -39,9 +45,26 @@ class MotionTable {
   [[nodiscard]] BodyState at(BodyIndex i, Instant t) const;
   /// Whether that is all there is to know of its motion: no error radius, no turning, no end.
   [[nodiscard]] bool is_flight(BodyIndex i) const { return forms_[i].is_flight; }
+  /// Whether that is a parabola, told as one even where it is straight, of a body that is upright.
+  [[nodiscard]] bool is_parabola(BodyIndex i) const {
+    return forms_[i].is_flight && forms_[i].position == 2 && forms_[i].velocity == 1 &&
+           forms_[i].upright;
+  }
   /// Where the ball is that bounds body i; its radius is infinite where that is on no parabola, or
   /// the body has no end.
-  [[nodiscard]] const BallFlight& flight(BodyIndex i) const { return flights_[i]; }
+  [[nodiscard]] BallFlight flight(BodyIndex i) const { return of(throws_[i], falls_[i]); }
+  /// Whether body i is a ball like most, and falls as they do: then `usual_flight` is its flight.
+  [[nodiscard]] bool is_usual(BodyIndex i) const;
+  /// The same for less: what is the same for most is not looked up.
+  [[nodiscard]] BallFlight usual_flight(BodyIndex i) const { return of(throws_[i], usual_); }
+  [[nodiscard]] Instant start_of_flight(BodyIndex i) const { return throws_[i].start; }
+  [[nodiscard]] const Vector3& usual_acceleration() const { return usual_.acceleration; }
+  /// The flight of body i is about to be asked for.
+  void look_up([[maybe_unused]] BodyIndex i) const {
+#if defined(__GNUC__)
+    __builtin_prefetch(&throws_[i]);
+#endif
+  }
 
   /// A shape with the motion that it has, for as long as this lives and no motion is kept.
   class Moving {
@@ -84,6 +107,19 @@ class MotionTable {
     return forms_[i].upright ? Quaternion(1.0, 0.0, 0.0, 0.0)
                              : model_.body(i).initial.pose.orientation;
   }
+  /// A flight in two parts: what is of one body, in one line of the cache, and what many share.
+  struct alignas(64) Throw {
+    Vector3 position = Vector3::Zero();
+    Vector3 velocity = Vector3::Zero();
+    Instant start;
+  };
+  struct Fall {
+    Vector3 acceleration = Vector3::Zero();
+    double radius = std::numeric_limits<double>::infinity();
+  };
+  static BallFlight of(const Throw& thrown, const Fall& falls) {
+    return {thrown.position, thrown.velocity, falls.acceleration, thrown.start, falls.radius};
+  }
   void set_flight(BodyIndex i, const Motion& motion);
   [[nodiscard]] Form form_of(BodyIndex i, const Motion& motion) const;
   void store(BodyIndex i, const Motion& motion);
@@ -93,7 +129,9 @@ class MotionTable {
   static constexpr std::uint32_t nowhere = ~std::uint32_t{0};
 
   const Model& model_;
-  std::vector<BallFlight> flights_;
+  std::vector<Throw> throws_;
+  std::vector<Fall> falls_;
+  Fall usual_;  ///< of the first ball that fell; its radius is infinite before
   std::vector<Form> forms_;
   std::vector<std::uint32_t> place_;  ///< in `others_`; nowhere: not there
   std::vector<StoredMotion> others_;

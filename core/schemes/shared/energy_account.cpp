@@ -80,6 +80,25 @@ Vector3 field_force(const Model& model, BodyIndex field, const BodyState& field_
 EnergyAccount::EnergyAccount(const Model& model, EnergyLedger& ledger)
     : model_(model), ledger_(ledger) {}
 
+double EnergyAccount::exchanged(BodyIndex i, const BodyInertia& inertia, const BodyState& from,
+                                const BodyState& to) {
+  const Vector3 displacement = to.pose.position - from.pose.position;
+  const Vector3& weight = model_.gravity_force(i);
+  const double falls = weight.dot(displacement);
+  ledger_.exchange(falls);
+  ledger_.exchange(renewed(inertia, from, to));
+  for (int axis = 0; axis < 3; ++axis) {
+    if (displacement[axis] != 0.0) {
+      ledger_.exchange(weight[axis] * to.pose.position[axis]);
+    }
+  }
+  return falls;
+}
+
+void EnergyAccount::fallen(BodyIndex i, const BodyState& from, const BodyState& to) {
+  (void)exchanged(i, model_.inertia(i), from, to);
+}
+
 double EnergyAccount::surplus(const Leg& leg) {
   assert(leg.from.size() == leg.to.size() && leg.other_force.size() == leg.to.size());
   double surplus = 0.0;
@@ -88,17 +107,8 @@ double EnergyAccount::surplus(const Leg& leg) {
     const BodyInertia& inertia = leg.island.inertia[k];
     const BodyState& from = leg.from[k];
     const BodyState& to = leg.to[k];
-    const Vector3 displacement = to.pose.position - from.pose.position;
-    const Vector3& weight = model_.gravity_force(i);
-    const double falls = weight.dot(displacement);
-    const double other = leg.other_force[k].dot(displacement);
-    ledger_.exchange(falls);
-    ledger_.exchange(renewed(inertia, from, to));
-    for (int axis = 0; axis < 3; ++axis) {
-      if (displacement[axis] != 0.0) {
-        ledger_.exchange(weight[axis] * to.pose.position[axis]);
-      }
-    }
+    const double falls = exchanged(i, inertia, from, to);
+    const double other = leg.other_force[k].dot(to.pose.position - from.pose.position);
     if (other != 0.0) {
       ledger_.add(EnergyLine::field_work, other);
     }

@@ -55,6 +55,9 @@ class EnergyAccount {
   /// Constant forces only: their work is force times displacement, exactly.
   /// truncation = change of kinetic energy - work of all forces along the motion.
   void leg(const Leg& leg);
+  /// The same of a body that does not turn and falls exactly, with nothing but the uniform force of
+  /// the model on it.
+  void fallen(BodyIndex i, const BodyState& from, const BodyState& to);
   /// The same with state-dependent forces, whose work is minus the change of their potential, or
   /// where they have none the integral of F dp along the motions (Gauss-Legendre, 8 points).
   /// `motions`: one per body of the island, covering [start, start + duration].
@@ -96,6 +99,9 @@ class EnergyAccount {
   void moved(BodyIndex i, Instant t, const BodyState& from, const BodyState& to);
 
  private:
+  /// Counts what gravity and the new velocities changed into each other; returns the work, J.
+  double exchanged(BodyIndex i, const BodyInertia& inertia, const BodyState& from,
+                   const BodyState& to);
   /// Kinetic energy gained minus work of gravity and `other_force`, J; books the latter.
   double surplus(const Leg& leg);
   /// What the forces do to the bodies on their motions at t, into `wrenches_` and `along_`.
