@@ -520,3 +520,22 @@ TEST_CASE("friction: a run that is interrupted while it slides goes on as if not
     }
   }
 }
+
+// Half of a face that spins lands: friction acts where that is pressed, and slides there. What it
+// took at the middle of the patch was not what it did to the body.
+TEST_CASE("friction: a face that lands flat, and spins, takes from the body what is booked",
+          "[friction]") {
+  const Simulation sim = simulate(
+      parse_scene("duration = 0.2\nframe = \"1/60\"\nG = 0\nfriction = 0.3\n[[body]]\nname = "
+                  "\"table\"\nentity = \"wall\"\nhalf_extents = [1, 0.5, 1]\nposition = [-1, "
+                  "-0.5, 0]\n[[body]]\nname = \"box\"\nentity = \"body\"\nhalf_extents = [0.3, "
+                  "0.1, 0.2]\nmass = 1\nrestitution = 0.3\nposition = [-0.1, 0.2, 0]\nvelocity = "
+                  "[-1, -1, 0.3]\nangular_velocity = [0, 2, 0]\n",
+                  "test.toml"),
+      {});
+  INFO(sim.result.reason);
+  REQUIRE(sim.result.status == RunStatus::completed);
+  CHECK(sim.result.cost.impacts > 0);
+  CHECK(sim.result.ledger.line(EnergyLine::impact_friction) < 0.0);
+  tests::check_explained(sim.result.ledger);
+}

@@ -188,31 +188,44 @@ bool EventContacts::strikes_flat(Event& event) {
       return false;
     }
   }
-  BodyState after_a = at_a;
-  BodyState after_b = at_b;
-  Vector3 unused = Vector3::Zero();
   const BodyInertia inertia_a = run_.flat_inertia(a);
   const BodyInertia inertia_b = run_.flat_inertia(b);
   event.contact.restitution = run_.model.restitution(a, b);
   event.contact.friction = run_.model.friction(a, b);
-  run_.law.apply(event.contact, {run_.model.body(a), inertia_a, after_a, unused},
-                 {run_.model.body(b), inertia_b, after_b, unused});
-  for (const auto& [i, before, after] : {std::tuple{a, &at_a, &after_a}, {b, &at_b, &after_b}}) {
-    if (!run_.model.is_free(i) || !run_.model.inertia(i).rotates) {
-      continue;
+  // What spins slides elsewhere in another direction: friction acts where the patch is pressed.
+  const bool spins = !(at_a.twist.angular - at_b.twist.angular).isZero(0.0);
+  constexpr int rounds = 32;
+  for (int round = 0; round < rounds; ++round) {
+    BodyState after_a = at_a;
+    BodyState after_b = at_b;
+    Vector3 unused = Vector3::Zero();
+    run_.law.apply(event.contact, {run_.model.body(a), inertia_a, after_a, unused},
+                   {run_.model.body(b), inertia_b, after_b, unused});
+    double moved = 0.0;
+    for (const auto& [i, before, after] : {std::tuple{a, &at_a, &after_a}, {b, &at_b, &after_b}}) {
+      if (!run_.model.is_free(i) || !run_.model.inertia(i).rotates) {
+        continue;
+      }
+      const Vector3 p = after->twist.linear - before->twist.linear;
+      if (p.dot(n) == 0.0) {
+        return false;
+      }
+      const Vector3& x = before->pose.position;
+      const Vector3 pressed = x + p * ((event.contact.point - x).dot(n) / p.dot(n));
+      if (!carries_at(manifold, pressed)) {
+        event.contact.point = nearest_point(manifold, pressed);
+        return false;
+      }
+      if (spins) {
+        moved = std::max(moved, (pressed - event.contact.point).norm());
+        event.contact.point = pressed;
+      }
     }
-    const Vector3 p = after->twist.linear - before->twist.linear;
-    if (p.dot(n) == 0.0) {
-      return false;
-    }
-    const Vector3& x = before->pose.position;
-    const Vector3 pressed = x + p * ((event.contact.point - x).dot(n) / p.dot(n));
-    if (!carries_at(manifold, pressed)) {
-      event.contact.point = nearest_point(manifold, pressed);
-      return false;
+    if (moved <= 16.0 * epsilon * event.contact.point.norm()) {
+      return true;
     }
   }
-  return true;
+  return false;  // two bodies are pressed at two points, or slide the less clearly where they spin
 }
 
 /// Stops the run if the impact law left the two approaching each other.
