@@ -539,3 +539,46 @@ TEST_CASE("friction: a face that lands flat, and spins, takes from the body what
   CHECK(sim.result.ledger.line(EnergyLine::impact_friction) < 0.0);
   tests::check_explained(sim.result.ledger);
 }
+
+// One beside the middle of the other: an impulse that turned neither would not keep its moment.
+TEST_CASE("friction: a box that lands flat on another keeps momentum and its moment",
+          "[friction]") {
+  for (const double beside : {0.0, 0.05, 0.2, 0.4}) {
+    for (const double slides : {0.0, 0.4}) {
+      for (const double spins : {0.0, 1.5}) {
+        CAPTURE(beside, slides, spins);
+        const Scene scene = parse_scene(
+            fmt::format(
+                "duration = 0.45\nframe = \"1/60\"\nG = 0\nfriction = 0.3\n[[body]]\nname = "
+                "\"low\"\nentity = \"body\"\nhalf_extents = [0.3, 0.1, 0.3]\nmass = 1\n"
+                "restitution = 0.5\n[[body]]\nname = \"high\"\nentity = \"body\"\n"
+                "half_extents = [0.3, 0.1, 0.3]\nmass = 2\nrestitution = 0.5\nposition = "
+                "[{}, 0.4, 0.02]\nvelocity = [{}, -1, 0]\nangular_velocity = [0, {}, 0]\n",
+                beside, slides, spins),
+            "test.toml");
+        const Simulation sim = simulate(scene, {});
+        INFO(sim.result.reason);
+        REQUIRE(sim.result.status == RunStatus::completed);
+        CHECK(sim.result.cost.impacts > 0);
+        tests::check_explained(sim.result.ledger);
+        CHECK(sim.result.ledger.line(EnergyLine::restitution_loss) +
+                  sim.result.ledger.line(EnergyLine::impact_friction) <
+              0.0);
+        const Model model(scene);
+        const auto moment = [&](const State& state) {
+          Vector3 sum = Vector3::Zero();
+          for (BodyIndex i = 0; i < 2; ++i) {
+            const auto& [pose, twist] = state[i];
+            const Vector3 spin = pose.orientation.conjugate() * twist.angular;
+            sum += pose.position.cross(model.inertia(i).mass * twist.linear) +
+                   pose.orientation * Vector3(model.inertia(i).principal.cwiseProduct(spin));
+          }
+          return sum;
+        };
+        const State start{scene.bodies[0].initial, scene.bodies[1].initial};
+        // A top is integrated to 1e-9.
+        CHECK((moment(sim.result.state) - moment(start)).norm() <= 1e-9);
+      }
+    }
+  }
+}

@@ -61,6 +61,7 @@ class EventContacts {
   [[nodiscard]] bool rest_on_joints(const Event& event, Instant t);
   void part_jointed(BodyIndex i, Instant t);
   [[nodiscard]] bool strikes_flat(Event& event);
+  void press_together(Event& event, const ContactManifold& manifold);
   [[nodiscard]] bool still_approaching(const Event& event, double approach, Instant t);
   [[nodiscard]] bool settle(std::span<const BodyIndex> seeds, Instant t,
                             const EventModes::SettleOptions& options = {});

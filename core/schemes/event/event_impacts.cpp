@@ -19,6 +19,17 @@ inline namespace core {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
+/// How often where a patch is pressed is put where the impulse that follows from that asks for.
+constexpr int most_presses = 32;
+
+/// Whether an impulse p goes through the middles of both, to roundoff: then it turns neither.
+bool is_along(const Vector3& p, const Pose& a, const Pose& b) {
+  const Vector3 between = b.position - a.position;
+  const double roundoff =
+      64.0 * epsilon * (a.position.lpNorm<Eigen::Infinity>() + between.lpNorm<1>());
+  return p.cross(between).norm() <= roundoff * p.norm();
+}
+
 /// How often an impact among bodies in touch is handed on at most, for each of them.
 constexpr std::size_t most_rounds = 1000;
 
@@ -188,25 +199,34 @@ bool EventContacts::strikes_flat(Event& event) {
       return false;
     }
   }
-  const BodyInertia inertia_a = run_.flat_inertia(a);
-  const BodyInertia inertia_b = run_.flat_inertia(b);
   event.contact.restitution = run_.model.restitution(a, b);
   event.contact.friction = run_.model.friction(a, b);
+  const auto rotates = [&](BodyIndex i) {
+    return run_.model.is_free(i) && run_.model.inertia(i).rotates;
+  };
+  const BodyInertia inertia_a = run_.flat_inertia(a);
+  const BodyInertia inertia_b = run_.flat_inertia(b);
   // What spins slides elsewhere in another direction: friction acts where the patch is pressed.
   const bool spins = !(at_a.twist.angular - at_b.twist.angular).isZero(0.0);
-  constexpr int rounds = 32;
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < most_presses; ++round) {
     BodyState after_a = at_a;
     BodyState after_b = at_b;
     Vector3 unused = Vector3::Zero();
     run_.law.apply(event.contact, {run_.model.body(a), inertia_a, after_a, unused},
                    {run_.model.body(b), inertia_b, after_b, unused});
+    const auto push = [](const BodyState& before, const BodyState& after) {
+      return Vector3(after.twist.linear - before.twist.linear);
+    };
+    if (rotates(a) && rotates(b) && !is_along(push(at_b, after_b), at_a.pose, at_b.pose)) {
+      press_together(event, manifold);
+      return false;
+    }
     double moved = 0.0;
     for (const auto& [i, before, after] : {std::tuple{a, &at_a, &after_a}, {b, &at_b, &after_b}}) {
-      if (!run_.model.is_free(i) || !run_.model.inertia(i).rotates) {
+      if (!rotates(i)) {
         continue;
       }
-      const Vector3 p = after->twist.linear - before->twist.linear;
+      const Vector3 p = push(*before, *after);
       if (p.dot(n) == 0.0) {
         return false;
       }
@@ -225,7 +245,57 @@ bool EventContacts::strikes_flat(Event& event) {
       return true;
     }
   }
-  return false;  // two bodies are pressed at two points, or slide the less clearly where they spin
+  return false;
+}
+
+/// Two bodies that turn land flat on each other, one beside the middle of the other: no point of
+/// the patch leaves both without a torque. They leave flat where both are turned alike: the patch
+/// is pressed where the difference of what the impulse does to their spins has no part along it.
+/// Momentum and its moment are kept. If that would be outside the patch, the nearest point of it.
+void EventContacts::press_together(Event& event, const ContactManifold& manifold) {
+  const auto [a, b] = std::pair{event.a, event.b};
+  const BodyState& at_a = motions_.now(a);
+  const BodyState& at_b = motions_.now(b);
+  const BodyInertia& inertia_a = run_.model.inertia(a);
+  const BodyInertia& inertia_b = run_.model.inertia(b);
+  const Vector3& n = event.contact.normal;
+  const Vector3 t1 = n.unitOrthogonal();
+  const Vector3 t2 = n.cross(t1);
+  const Matrix3 inverse_a = inertia_a.inverse(at_a.pose.orientation);
+  const Matrix3 inverse_b = inertia_b.inverse(at_b.pose.orientation);
+  for (int round = 0; round < most_presses; ++round) {
+    BodyState after_a = at_a;
+    BodyState after_b = at_b;
+    Vector3 unused = Vector3::Zero();
+    run_.law.apply(event.contact, {run_.model.body(a), inertia_a, after_a, unused},
+                   {run_.model.body(b), inertia_b, after_b, unused});
+    const Vector3 p = inertia_b.mass * (after_b.twist.linear - at_b.twist.linear);
+    const auto spins = [&](const Vector3& x) {
+      const Vector3 difference = inverse_a * (x - at_a.pose.position).cross(p) +
+                                 inverse_b * (x - at_b.pose.position).cross(p);
+      return Eigen::Vector2d(t1.dot(difference), t2.dot(difference));
+    };
+    const Vector3 c = event.contact.point;
+    const Eigen::Vector2d here = spins(c);
+    Eigen::Matrix2d change;
+    change.col(0) = spins(c + t1) - here;
+    change.col(1) = spins(c + t2) - here;
+    const double det = change.determinant();
+    if (!(std::abs(det) > epsilon * change.squaredNorm())) {
+      return;
+    }
+    const Eigen::Vector2d step(-(change(1, 1) * here[0] - change(0, 1) * here[1]) / det,
+                               -(change(0, 0) * here[1] - change(1, 0) * here[0]) / det);
+    const Vector3 pressed = c + step[0] * t1 + step[1] * t2;
+    if (!carries_at(manifold, pressed)) {
+      event.contact.point = nearest_point(manifold, pressed);
+      return;
+    }
+    event.contact.point = pressed;
+    if (step.norm() <= 16.0 * epsilon * c.norm()) {
+      return;
+    }
+  }
 }
 
 /// Stops the run if the impact law left the two approaching each other.
