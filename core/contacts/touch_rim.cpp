@@ -179,6 +179,18 @@ std::optional<std::vector<TouchRim>> rims_of(const Touch& touch, const Shape& a,
   return rims;
 }
 
+std::optional<std::vector<TouchRim::Side>> sides_of_face(const Shape& shape,
+                                                         const Vector3& outward) {
+  const auto* hull = std::get_if<Hull>(&shape);
+  if (hull == nullptr && !std::holds_alternative<Box>(shape)) {
+    return std::nullopt;
+  }
+  TouchFeature face;
+  face.kind = Kind::plane;
+  face.direction = outward;
+  return region(face, shape);
+}
+
 double beyond_region(const TouchFeature& feature, const Shape& shape, const Vector3& x) {
   const auto sides = region(feature, shape);
   return sides ? beyond_sides(*sides, x) : infinity;

@@ -32,6 +32,11 @@ struct TouchRim {
 [[nodiscard]] std::optional<std::vector<TouchRim>> rims_of(const Touch& touch, const Shape& a,
                                                            const Shape& b);
 
+/// The planes through the edges of the face with this outward normal (body frame) of a box or hull;
+/// nullopt where there is no such face.
+[[nodiscard]] std::optional<std::vector<TouchRim::Side>> sides_of_face(const Shape& shape,
+                                                                       const Vector3& outward);
+
 /// How far x (body frame, m) is beyond the region of a feature, in which it is the nearest one;
 /// negative: inside, infinite where that is not known.
 [[nodiscard]] double beyond_region(const TouchFeature& feature, const Shape& shape,

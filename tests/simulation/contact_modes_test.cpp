@@ -303,3 +303,31 @@ TEST_CASE("whatever the integrator and detector, what is held is held", "[modes]
     }
   }
 }
+
+// Rims are watched of round ends and of hulls, too: a ball went on level beside them.
+TEST_CASE("a ball that slides off the end of a cylinder, a cone or a hull leaves it at the rim",
+          "[modes]") {
+  for (const char* const shape :
+       {"shape = \"cylinder\"\nradius = 0.7\nlength = 0.5\nposition = [0, -0.25, 0]\n",
+        "shape = \"cone\"\nradius = 0.7\nheight = 0.8\nposition = [0, -0.2, 0]\n"
+        "axis_angle = [1, 0, 0, 3.141592653589793]\n",
+        "shape = \"hull\"\nposition = [0, -0.25, 0]\npoints = [[0.7, 0.25, 1], [0.7, 0.25, -1], "
+        "[-0.7, 0.25, 1], [-0.7, 0.25, -1], [0.7, -0.25, 1], [0.7, -0.25, -1], [-0.7, -0.25, 1], "
+        "[-0.7, -0.25, -1]]\n"}) {
+    CAPTURE(shape);
+    const Simulation sim =
+        run("duration = 1\nframe = \"1/60\"\nG = 9.8\n[[body]]\nname = "
+            "\"table\"\nentity = \"wall\"\n" +
+            std::string(shape) +
+            "[[body]]\nname = \"ball\"\nentity = \"ball\"\nradius = 0.1\nmass = "
+            "1\nrestitution = 0\nposition = [0, 0.1, 0]\nvelocity = [2, 0, 0]\n");
+    double ends = -1.0;
+    for (const Event& event : sim.trajectory.events()) {
+      if (event.kind == EventKind::contact_ends && ends < 0.0) {
+        ends = event.time.seconds;
+      }
+    }
+    CHECK(std::abs(ends - 0.35) <= 1e-9);
+    tests::check_explained(sim.result.ledger);
+  }
+}

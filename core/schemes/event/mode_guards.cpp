@@ -1,5 +1,6 @@
 #include "core/schemes/event/mode_guards.hpp"
 
+#include "core/contacts/touch_rim.hpp"
 #include "core/schemes/shared/support.hpp"
 
 #include <algorithm>
@@ -107,8 +108,74 @@ struct Guards {
     return point;
   }
 
-  [[nodiscard]] double rim(std::size_t place, const Motion& point, const Vector3& normal) const {
-    return face_exit_time(model.shape(bodies[place]), motions[place], point, normal, duration);
+  /// When a point passes the rim of the face with this outward normal.
+  [[nodiscard]] double rim(std::size_t place, const Motion& point, const Vector3& outward) const {
+    const Shape& shape = model.shape(bodies[place]);
+    if (std::holds_alternative<Hull>(shape)) {
+      return hull_rim(shape, place, point, outward);
+    }
+    if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
+      return round_rim(cylinder->radius, place, point);
+    }
+    if (const auto* cone = std::get_if<Cone>(&shape)) {
+      return round_rim(cone->radius, place, point);
+    }
+    return face_exit_time(shape, motions[place], point, outward, duration);
+  }
+
+  /// Position of a point in the frame of a body that does not turn, as a polynomial of degree 2.
+  [[nodiscard]] Polynomial<3> in_frame(std::size_t place, const Motion& point) const {
+    const Quaternion to_body = motions[place].orientation(0.0).conjugate();
+    Polynomial<3> x;
+    x.resize(2);
+    for (int c = 0; c <= 2; ++c) {
+      const auto part = [c](const Polynomial<3>& p) {
+        return c <= p.degree() ? Vector3(p[c]) : Vector3(Vector3::Zero());
+      };
+      x[c] = to_body * Vector3(part(point.position) - part(motions[place].position));
+    }
+    return x;
+  }
+
+  [[nodiscard]] double hull_rim(const Shape& shape, std::size_t place, const Motion& point,
+                                const Vector3& outward) const {
+    const Quaternion to_body = motions[place].orientation(0.0).conjugate();
+    const auto sides = sides_of_face(shape, to_body * outward);
+    if (!sides) {
+      return infinity;
+    }
+    const Polynomial<3> x = in_frame(place, point);
+    double earliest = infinity;
+    for (const TouchRim::Side& side : *sides) {
+      Polynomial<3> beyond;
+      beyond.resize(2);
+      for (int c = 0; c <= 2; ++c) {
+        beyond[c] =
+            Vector3(side.normal.dot(Vector3(x[c])) - (c == 0 ? side.offset : 0.0), 0.0, 0.0);
+      }
+      earliest = std::min(earliest, first_positive(beyond, duration));
+    }
+    return earliest;
+  }
+
+  /// Of the round end of a body about its y axis.
+  [[nodiscard]] double round_rim(double radius, std::size_t place, const Motion& point) const {
+    const Polynomial<3> x = in_frame(place, point);
+    Polynomial<3> beyond;  // |x across the axis|^2 - radius^2
+    beyond.resize(4);
+    for (int j = 0; j <= 2; ++j) {
+      for (int k = 0; k <= 2; ++k) {
+        beyond[j + k].x() += x[j].x() * x[k].x() + x[j].z() * x[k].z();
+      }
+    }
+    beyond[0].x() -= radius * radius;
+    return first_positive(beyond, duration);
+  }
+
+  /// Whether bodies at two places move alike.
+  [[nodiscard]] bool alike(std::size_t a, std::size_t b) const {
+    return mode.velocities[a].linear == mode.velocities[b].linear &&
+           mode.accelerations[a].linear == mode.accelerations[b].linear;
   }
 
   [[nodiscard]] std::string of_patch(std::size_t p, double& until) const {
@@ -118,7 +185,12 @@ struct Guards {
     for (const auto& [round, other] : {std::pair{patch.a, patch.b}, std::pair{patch.b, patch.a}}) {
       if (std::holds_alternative<Sphere>(model.shape(bodies[round]))) {
         const bool on_face = other == patch.b ? patch.manifold.face_of_b : patch.manifold.face_of_a;
-        until = on_face ? rim(other, motions[round], n) : infinity;
+        if (on_face) {
+          until = rim(other, motions[round], other == patch.a ? n : Vector3(-n));
+        } else if (const Shape& shape = model.shape(bodies[other]);
+                   !std::holds_alternative<Sphere>(shape) && !alike(patch.a, patch.b)) {
+          return "a ball slides along an edge or a round side";
+        }
         return {};
       }
     }
@@ -127,7 +199,7 @@ struct Guards {
       Motion point = motions[a_points ? patch.a : patch.b];
       point.position[0] = patch.manifold.points[0].position;
       if (patch.manifold.face_of_a != patch.manifold.face_of_b) {
-        until = rim(a_points ? patch.b : patch.a, point, n);
+        until = a_points ? rim(patch.b, point, -n) : rim(patch.a, point, n);
       }
       return {};
     }
@@ -146,7 +218,7 @@ struct Guards {
     for (const std::size_t k : {patch.a, patch.b}) {
       if (mode.velocities[k].angular.isZero(
               0.0)) {  // a body that spins is carried under its middle
-        until = std::min(until, rim(k, *point, n));
+        until = std::min(until, rim(k, *point, k == patch.a ? n : Vector3(-n)));
       }
     }
     return {};
