@@ -29,9 +29,9 @@ struct TurningPair {
 /// A group of bodies that turn while they touch, and what moves them.
 struct TurningGroup {
   TurningState start;
-  std::vector<BodyIndex> bodies;            ///< by place
-  std::vector<BodyInertia> inertia;         ///< by place; mass <= 0: it stays where it is
-  std::vector<Vector3> constant_force;      ///< by place, N
+  std::vector<BodyIndex> bodies;        ///< by place
+  std::vector<BodyInertia> inertia;     ///< by place; mass <= 0: it stays where it is
+  std::vector<Vector3> constant_force;  ///< by place, N
   /// By place: forces that depend on the state or on time, of the body alone; not owned.
   std::vector<std::vector<const Force*>> forces;
   std::vector<TurningPair> pairs;           ///< as `Touch::pair` counts
