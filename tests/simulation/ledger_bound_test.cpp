@@ -80,7 +80,7 @@ void check_frames(const std::string& scene, const MethodChoice& method, double d
 
 }  // namespace
 
-TEST_CASE("ledger: what is elastic is explained for long, whatever the scheme", "[ledger]") {
+TEST_CASE("ledger: what is elastic is explained for long, whatever the scheme", "[ledger][slow]") {
   // Balls that fell through the floor of `balls` go on to fall, by then at 200 m/s.
   const std::pair<const char*, double> runs[] = {
       {"billiard", 30.0}, {"balls", 20.0}, {"table", 30.0}};
