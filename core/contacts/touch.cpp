@@ -180,6 +180,7 @@ std::optional<Corners> polytope_corners(const Shape& shape) {
 
 /// A vertex is at a point of a manifold if it is nearer than this part of the size.
 constexpr double near_vertex = 1e-7;
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The corner or cap at a point of the surface (body frame), the normal pointing out of the body.
 std::optional<TouchFeature> ball_feature(const Shape& shape, const Vector3& x,
@@ -346,15 +347,27 @@ std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point
       return touch;
     }
   }
-  if (manifold.face_of_b && (corner_a || !(manifold.face_of_a && corner_b))) {
+  if (manifold.face_of_a || manifold.face_of_b) {
+    const std::optional<TouchFeature> face_a =
+        manifold.face_of_a ? std::optional(face_feature(shape_a, on_a, n_A)) : std::nullopt;
+    const std::optional<TouchFeature> face_b =
+        manifold.face_of_b ? std::optional(face_feature(shape_b, on_b, -n_B)) : std::nullopt;
+    const double past_a = corner_b && face_a
+                              ? beyond_region(*face_a, shape_a, a.to_body(b.to_world(corner_b->at)))
+                              : infinity;
+    const double past_b = corner_a && face_b
+                              ? beyond_region(*face_b, shape_b, b.to_body(a.to_world(corner_a->at)))
+                              : infinity;
+    // Of two corners at one place the one that is on the face of the other: it may slide on.
+    const bool has_a = corner_a && !(corner_b && past_a < past_b);
     // Where edges cross on a face the point moves with a, until the next look.
-    touch.on_a = corner_a.value_or(TouchFeature{Kind::ball, on_a, Vector3::Zero(), 0.0});
-    touch.on_b = face_feature(shape_b, on_b, -n_B);
-    return touch;
-  }
-  if (manifold.face_of_a) {
-    touch.on_a = face_feature(shape_a, on_a, n_A);
-    touch.on_b = corner_b.value_or(TouchFeature{Kind::ball, on_b, Vector3::Zero(), 0.0});
+    if (face_b && (has_a || !(face_a && corner_b))) {
+      touch.on_a = corner_a.value_or(TouchFeature{Kind::ball, on_a, Vector3::Zero(), 0.0});
+      touch.on_b = *face_b;
+    } else {
+      touch.on_a = *face_a;
+      touch.on_b = corner_b.value_or(TouchFeature{Kind::ball, on_b, Vector3::Zero(), 0.0});
+    }
     return touch;
   }
   const auto edge_a = line_feature(shape_a, on_a, n_A);

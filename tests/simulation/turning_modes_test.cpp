@@ -332,3 +332,23 @@ TEST_CASE("turning: dominoes hand their fall on", "[turning]") {
     CHECK((q * Vector3::UnitY()).x() > 0.1);
   }
 }
+
+// Two cubes side by side, one of which falls: corners of both are at one place, and it is those on
+// the face of the other that touch. Taken for the others, they would leave the rim again at once.
+TEST_CASE("turning: a cube that falls along another is looked at a few times", "[turning]") {
+  constexpr double half = 0.125 * (1.0 - 0x1p-46);
+  std::string text =
+      "duration = 2.0\nframe = \"1/60\"\nG = 9.8\n"
+      "[[body]]\nname = \"floor\"\nentity = \"wall\"\nshape = \"half-space\"\n";
+  for (const auto& [name, x, y] :
+       {std::tuple{"a", 0.25, 0.375}, {"b", 0.0, 0.375}, {"c", 0.5, 0.125}, {"d", 0.25, 0.125}}) {
+    text += fmt::format(
+        "[[body]]\nname = \"{}\"\nentity = \"body\"\nhalf_extents = {}\nmass = 1.0\n"
+        "restitution = 0.5\nposition = [{}, {}, 0.0]\n",
+        name, at(Vector3::Constant(half)), x, y);
+  }
+  const auto sim = run(text);
+  check_whole(sim, text);
+  CHECK(sim.result.cost.steps < 500);
+  CHECK(std::abs(sim.result.state[2].pose.position.y() - 0.125) <= 1e-9);
+}
