@@ -352,3 +352,14 @@ TEST_CASE("turning: a cube that falls along another is looked at a few times", "
   CHECK(sim.result.cost.steps < 500);
   CHECK(std::abs(sim.result.state[2].pose.position.y() - 0.125) <= 1e-9);
 }
+
+// What its hops had left when it came to rest was lost to them, and not to the steps.
+TEST_CASE("turning: what bounces still have is lost by completing them", "[turning]") {
+  const std::string text =
+      head(3.0, "0.4") + box({0.3, 0.1, 0.2}, {0, 0.5, 0}, 0.5, "axis_angle = [0, 0, 1, 0.3]");
+  const auto sim = run(text);
+  check_whole(sim, text);
+  const double completed = sim.result.ledger.line(EnergyLine::zeno_completion);
+  CHECK(completed < 0.0);
+  CHECK(std::abs(sim.result.ledger.line(EnergyLine::projection)) < 0.5 * std::abs(completed));
+}

@@ -153,6 +153,7 @@ class EventModes {
   void lift(Gathered& found, Turning& turning);
   void raise(Gathered& found, Turning& turning);
   [[nodiscard]] bool has_room(std::span<const BodyState> before, const Gathered& found, Instant t);
+  [[nodiscard]] std::vector<double> hops(const Gathered& found);
   [[nodiscard]] bool fly(const Gathered& found, const Turning& turning, Instant t,
                          const Adopt& adopt);
   void book_lift(const Gathered& found, Instant t);

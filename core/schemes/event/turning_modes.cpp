@@ -362,6 +362,24 @@ bool EventModes::has_room(std::span<const BodyState> before, const Gathered& fou
   return true;
 }
 
+/// How fast those that were not held yet still hop, m/s, by pair: what takes that from them
+/// completes an accumulation. Of those that were held it is what steps were off.
+std::vector<double> EventModes::hops(const Gathered& found) {
+  std::vector<double> rates(found.pairs.size(), 0.0);
+  for (std::size_t p = 0; p < found.pairs.size(); ++p) {
+    const GroupPatch& patch = found.group.patches[p];
+    if (found.passes[p] != 0 || graph_.joins(found.pairs[p].first, found.pairs[p].second)) {
+      continue;
+    }
+    for (std::size_t k = 0; k < patch.manifold.size; ++k) {
+      const Contact point{patch.manifold.points[k].position, patch.manifold.normal, 0.0};
+      rates[p] = std::max(
+          rates[p], std::abs(normal_velocity(point, found.states[patch.a], found.states[patch.b])));
+    }
+  }
+  return rates;
+}
+
 /// Nothing holds the group any longer.
 bool EventModes::fly(const Gathered& found, const Turning& turning, Instant t, const Adopt& adopt) {
   FlatMode mode;
@@ -370,6 +388,7 @@ bool EventModes::fly(const Gathered& found, const Turning& turning, Instant t, c
   mode.accelerations = found.group.loads;
   mode.kept.assign(found.pairs.size(), 0);
   mode.slip.assign(found.pairs.size(), Slip::none);
+  mode.rate = hops(found);
   book_lift(found, t);
   commit(found, mode, t, adopt);
   return true;
@@ -401,7 +420,7 @@ void EventModes::carry_on(const Gathered& found, const Turning& turning, Instant
   mode.accelerations = turning.mode.forces.accelerations;
   mode.kept.assign(n, 0);
   mode.pressing.assign(n, 0.0);
-  mode.rate.assign(n, 0.0);
+  mode.rate = hops(found);
   mode.slip.assign(n, Slip::none);
   mode.force.assign(n, Vector3::Zero());
   for (std::size_t k = 0; k < turning.mode.choices.size(); ++k) {
