@@ -360,6 +360,16 @@ TEST_CASE("two bodies that turn in touch: scenes that once broke a promise", "[r
   }
 }
 
+TEST_CASE("a step that a strike would end ends, too, where the strike never comes", "[random]") {
+  // Another body struck one of the two before. What the other was held by went on along a motion
+  // that had ended: into a box, and with 1e14 J.
+  for (const std::uint64_t index : {1047, 1569}) {
+    const Trial trial = try_scene(touching_scene(31, index));
+    CAPTURE(index, to_string(trial.fate), trial.reason);
+    CHECK_FALSE(trial.failed());
+  }
+}
+
 TEST_CASE("a survey that was killed goes on, and one that wants more scenes", "[random][sweep]") {
   const tests::TemporaryFolder folder;
   const std::string journal = folder.path("blocks");

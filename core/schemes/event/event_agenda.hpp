@@ -29,8 +29,9 @@ enum class DueKind : std::uint8_t {
   recheck,        ///< ask the detector again
   stays,          ///< two solids touch, and would go on to do so
   impact,
+  step_ends,  ///< the motions of what `a` and `b` hold together were found up to here
 };
-constexpr DueKind last_of(DueKind) { return DueKind::impact; }
+constexpr DueKind last_of(DueKind) { return DueKind::step_ends; }
 
 /// An event that has come up.
 struct DueEvent {

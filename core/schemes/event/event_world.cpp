@@ -71,6 +71,7 @@ void EventWorld::take(const DueEvent& event) {
     case DueKind::support_ends:
       return contacts_.leave_support(event.a, event.time);
     case DueKind::mode_ends:
+    case DueKind::step_ends:
       return contacts_.settle_anew(run_.model.is_free(event.a) ? event.a : event.b, event.time);
     case DueKind::stays:
       return contacts_.stay(event.a, event.b, event.time);
