@@ -23,10 +23,10 @@ bool held(BodyIndex a, BodyIndex b, std::span<const char> in_hand) {
 }  // namespace
 
 PenetrationProbe::PenetrationProbe(const Model& model)
-    : model_(model), detector_(find_detector("certified")), bounds_(swept_bounds()) {
+    : model_(model), detector_(find_detector("certified")) {
   if (!model.asks_every_pair()) {
-    boxes_ = std::make_unique<ccd::ImageBoxes>(model,
-                                               find_broad_phase(model.broad_phase())(model.size()));
+    constexpr double default_tolerance = 0.0;
+    neighbourhood_ = find_neighbourhood(model.broad_phase())(model, default_tolerance);
   }
 }
 
@@ -43,7 +43,7 @@ bool PenetrationProbe::can_penetrate(BodyIndex a, BodyIndex b) const {
 template <typename Visit>
 void PenetrationProbe::for_each_near_pair(std::span<const BodyState> bodies,
                                           const Visit& visit) const {
-  if (!boxes_) {
+  if (!neighbourhood_) {
     for (const auto& [a, b] : model_.pairs()) {
       if (!visit(a, b)) {
         return;
@@ -51,18 +51,19 @@ void PenetrationProbe::for_each_near_pair(std::span<const BodyState> bodies,
     }
     return;
   }
-  std::vector<Aabb> at(model_.size());
   for (BodyIndex i = 0; i < model_.size(); ++i) {
     const Motion still = Motion::at_rest(Instant{}, bodies[i].pose);
-    at[i] = bounds_({model_.shape(i), still}, {Instant{}, 0.0});
-    boxes_->update(i, at[i]);
+    neighbourhood_->enter(i, {model_.shape(i), still}, Instant{}, Instant::never());
   }
   std::vector<Neighbour> near;
   for (BodyIndex a = 0; a < model_.size(); ++a) {
     near.clear();
-    boxes_->near(a, at[a], near);
+    neighbourhood_->near(a, near);
+    std::erase_if(near, [a](const Neighbour& b) { return b.body <= a; });
+    std::sort(near.begin(), near.end(),
+              [](const Neighbour& x, const Neighbour& y) { return x.body < y.body; });
     for (const Neighbour& b : near) {
-      if (a < b.body && !visit(a, b.body)) {
+      if (!visit(a, b.body)) {
         return;
       }
     }

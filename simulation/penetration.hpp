@@ -1,8 +1,8 @@
 #pragma once
 
-#include "ccd/image_boxes.hpp"
 #include "core/contact_detector.hpp"
 #include "core/model.hpp"
+#include "core/neighbourhood.hpp"
 #include "core/scheme.hpp"
 
 #include <memory>
@@ -53,8 +53,7 @@ class PenetrationProbe {
 
   const Model& model_;
   std::shared_ptr<const ContactDetector> detector_;
-  std::unique_ptr<ccd::ImageBoxes> boxes_;  ///< null where the model asks every pair
-  SweptBounds bounds_;
+  std::unique_ptr<Neighbourhood> neighbourhood_;  ///< null where the model asks every pair
 };
 
 }  // namespace simulation
