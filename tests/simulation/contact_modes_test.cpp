@@ -331,3 +331,73 @@ TEST_CASE("a ball that slides off the end of a cylinder, a cone or a hull leaves
     tests::check_explained(sim.result.ledger);
   }
 }
+
+namespace {
+
+/// A ball that slides along x at 1 m/s, without friction, on what is at y = 0.
+std::string slider(const std::string& floor, double x, double duration) {
+  return head(duration) + "[[body]]\nname = \"floor\"\nentity = \"wall\"\n" + floor +
+         fmt::format(
+             "[[body]]\nname = \"ball\"\nentity = \"ball\"\nradius = 0.1\nmass = 1\n"
+             "restitution = 0\nposition = [{}, 0.1, 0.05]\nvelocity = [1, 0, 0]\n",
+             x);
+}
+
+}  // namespace
+
+// It went on level in the air: nobody watched where a face of several pieces ends.
+TEST_CASE("what slides off a mesh or a compound leaves it at the rim, and not at a seam",
+          "[modes]") {
+  const std::string mesh =
+      "shape = \"height-field\"\nspacing = [1, 1]\nheights = [[0, 0, 0], [0, 0, 0], [0, 0, 0]]\n";
+  const std::string boards =
+      "shape = \"compound\"\n[[body.part]]\nshape = \"box\"\nhalf_extents = [0.5, 0.1, 1]\n"
+      "position = [-0.5, -0.1, 0]\n[[body.part]]\nshape = \"cylinder\"\nradius = 0.5\nlength = 1\n"
+      "position = [0, -0.5, 0]\n[[body.part]]\nshape = \"hull\"\nposition = [0.5, -0.25, 0]\n"
+      "points = [[0.5, 0.25, 1], [0.5, 0.25, -1], [-0.5, 0.25, 1], [-0.5, 0.25, -1], "
+      "[0.5, -0.25, 1], [0.5, -0.25, -1], [-0.5, -0.25, 1], [-0.5, -0.25, -1]]\n";
+  for (const std::string& floor : {mesh, boards}) {
+    CAPTURE(floor);
+    const Simulation sim = run(slider(floor, -0.75, 3.0));
+    CHECK(sim.result.status == RunStatus::stopped);
+    CHECK(sim.result.reason.find("allowed: ") != std::string::npos);
+    // Pieces of a face have 1e-12 of the size between them; a tenfold of that.
+    CHECK(std::abs(sim.result.end.seconds - 1.75) <= 2e-11);
+    tests::check_explained(sim.result.ledger);
+  }
+}
+
+// It went through: whoever is in touch was not asked whether it meets the rest.
+TEST_CASE("what slides on one part of a body is stopped where it meets another", "[modes]") {
+  const double ramp = 1.0 - 0.1 * (std::sqrt(2.0) - 1.0);  // where the ball meets 45 degrees
+  const std::pair<std::string, double> floors[] = {
+      {"shape = \"height-field\"\nspacing = [1, 1]\n"
+       "heights = [[0, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0], [1, 1, 1]]\n",
+       ramp},
+      {"shape = \"compound\"\n[[body.part]]\nshape = \"box\"\nhalf_extents = [1, 0.1, 1]\n"
+       "position = [0, -0.1, 0]\n[[body.part]]\nshape = \"box\"\nhalf_extents = [0.1, 0.5, 1]\n"
+       "position = [0.9, 0.4, 0]\n",
+       0.7}};
+  for (const auto& [floor, x] : floors) {
+    CAPTURE(floor);
+    const Simulation sim = run(slider(floor, -0.5, 3.0));
+    CHECK(sim.result.status == RunStatus::stopped);
+    CHECK(sim.result.reason.find("meet in another") != std::string::npos);
+    // The tolerance of the detector, 1e-9 of the ball, seen along a slope of 45 degrees.
+    CHECK(std::abs(sim.result.end.seconds - (x + 0.5)) <= 1e-9);
+  }
+  // A bridge whose piers hang beside the box that it slides on; its centre of mass is 0.04 m below
+  // the middle of its deck.
+  const Simulation bridge =
+      run(head(2.0) +
+          "[[body]]\nname = \"box\"\nentity = \"wall\"\nhalf_extents = [0.5, 0.5, 0.5]\n"
+          "position = [0, -0.5, 0]\n[[body]]\nname = \"bridge\"\nentity = \"body\"\n"
+          "shape = \"compound\"\nmass = 1\nposition = [0, 0.06, 0]\nvelocity = [1, 0, 0]\n"
+          "restitution = 0\n[[body.part]]\nshape = \"box\"\nhalf_extents = [1, 0.1, 0.1]\n"
+          "[[body.part]]\nshape = \"box\"\nhalf_extents = [0.1, 0.2, 0.1]\n"
+          "position = [-0.9, -0.14, 0]\n"
+          "[[body.part]]\nshape = \"box\"\nhalf_extents = [0.1, 0.2, 0.1]\n"
+          "position = [0.9, -0.14, 0]\n");
+  CHECK(bridge.result.status == RunStatus::stopped);
+  CHECK(std::abs(bridge.result.end.seconds - 0.3) <= 1e-9);
+}

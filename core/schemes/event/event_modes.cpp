@@ -67,7 +67,7 @@ bool EventModes::settle_flat(Gathered found, Instant t, const Adopt& adopt,
       return false;
     }
     std::vector<double> until;
-    why_not_ = guard_times(run_.model, found.bodies, found.states, found.group, mode,
+    why_not_ = guard_times(run_, found.bodies, found.states, found.group, mode,
                            run_.epoch_end() - t, until);
     if (!why_not_.empty()) {
       return false;

@@ -472,7 +472,8 @@ void EventMotions::hold(Flow& flow, Instant t) {
   const double mass = flow.island.inertia[0].mass;
   const Motion under = of(surface).shifted(t - start_of(surface));
   const double left = std::min({run_.epoch_end() - t, under.duration, motion.duration});
-  double until = face_exit_time(run_.model.shape(surface), under, motion, n, left);
+  double until =
+      face_exit_time(run_.model.shape(surface), under, motion, n, motion.position[0], left);
   if (run_.model.mobility(surface) == Mobility::driven) {
     until = std::min(until, lift_off_time(under, n, mass, net_force(i)));
     motion = ride(motion, under, n);

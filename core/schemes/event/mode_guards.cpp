@@ -1,6 +1,7 @@
 #include "core/schemes/event/mode_guards.hpp"
 
-#include "core/contacts/touch_rim.hpp"
+#include "core/contacts/face_parts.hpp"
+#include "core/schemes/event/event_run.hpp"
 #include "core/schemes/shared/support.hpp"
 
 #include <algorithm>
@@ -14,6 +15,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct Guards {
+  const EventRun& run;
   const Model& model;
   std::span<const BodyIndex> bodies;
   const ContactGroup& group;
@@ -108,68 +110,10 @@ struct Guards {
     return point;
   }
 
-  /// When a point passes the rim of the face with this outward normal.
-  [[nodiscard]] double rim(std::size_t place, const Motion& point, const Vector3& outward) const {
-    const Shape& shape = model.shape(bodies[place]);
-    if (std::holds_alternative<Hull>(shape)) {
-      return hull_rim(shape, place, point, outward);
-    }
-    if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
-      return round_rim(cylinder->radius, place, point);
-    }
-    if (const auto* cone = std::get_if<Cone>(&shape)) {
-      return round_rim(cone->radius, place, point);
-    }
-    return face_exit_time(shape, motions[place], point, outward, duration);
-  }
-
-  /// Position of a point in the frame of a body that does not turn, as a polynomial of degree 2.
-  [[nodiscard]] Polynomial<3> in_frame(std::size_t place, const Motion& point) const {
-    const Quaternion to_body = motions[place].orientation(0.0).conjugate();
-    Polynomial<3> x;
-    x.resize(2);
-    for (int c = 0; c <= 2; ++c) {
-      const auto part = [c](const Polynomial<3>& p) {
-        return c <= p.degree() ? Vector3(p[c]) : Vector3(Vector3::Zero());
-      };
-      x[c] = to_body * Vector3(part(point.position) - part(motions[place].position));
-    }
-    return x;
-  }
-
-  [[nodiscard]] double hull_rim(const Shape& shape, std::size_t place, const Motion& point,
-                                const Vector3& outward) const {
-    const Quaternion to_body = motions[place].orientation(0.0).conjugate();
-    const auto sides = sides_of_face(shape, to_body * outward);
-    if (!sides) {
-      return infinity;
-    }
-    const Polynomial<3> x = in_frame(place, point);
-    double earliest = infinity;
-    for (const TouchRim::Side& side : *sides) {
-      Polynomial<3> beyond;
-      beyond.resize(2);
-      for (int c = 0; c <= 2; ++c) {
-        beyond[c] =
-            Vector3(side.normal.dot(Vector3(x[c])) - (c == 0 ? side.offset : 0.0), 0.0, 0.0);
-      }
-      earliest = std::min(earliest, first_positive(beyond, duration));
-    }
-    return earliest;
-  }
-
-  /// Of the round end of a body about its y axis.
-  [[nodiscard]] double round_rim(double radius, std::size_t place, const Motion& point) const {
-    const Polynomial<3> x = in_frame(place, point);
-    Polynomial<3> beyond;  // |x across the axis|^2 - radius^2
-    beyond.resize(4);
-    for (int j = 0; j <= 2; ++j) {
-      for (int k = 0; k <= 2; ++k) {
-        beyond[j + k].x() += x[j].x() * x[k].x() + x[j].z() * x[k].z();
-      }
-    }
-    beyond[0].x() -= radius * radius;
-    return first_positive(beyond, duration);
+  /// When a point passes the rim of the face with this outward normal that is touched at `at`.
+  [[nodiscard]] double rim(std::size_t place, const Motion& point, const Vector3& outward,
+                           const Vector3& at) const {
+    return face_exit_time(model.shape(bodies[place]), motions[place], point, outward, at, duration);
   }
 
   /// Whether bodies at two places move alike.
@@ -179,14 +123,31 @@ struct Guards {
   }
 
   [[nodiscard]] std::string of_patch(std::size_t p, double& until) const {
+    until = infinity;
+    std::string why = rim_of_patch(p, until);
+    const GroupPatch& patch = group.patches[p];
+    if (!why.empty() || alike(patch.a, patch.b) || until <= at_once * run.epoch()) {
+      return why;
+    }
+    const TouchingPair pair{bodies[patch.a], bodies[patch.b], patch.manifold.normal,
+                            patch.manifold.points[0].position};
+    return meets_elsewhere(run, pair, of_place(patch.a), of_place(patch.b), Instant{}, duration,
+                           until);
+  }
+
+  [[nodiscard]] Moving of_place(std::size_t place) const {
+    return {motions[place], !mode.velocities[place].angular.isZero(0.0)};
+  }
+
+  [[nodiscard]] std::string rim_of_patch(std::size_t p, double& until) const {
     const GroupPatch& patch = group.patches[p];
     const Vector3& n = patch.manifold.normal;
-    until = infinity;
+    const Vector3& at = patch.manifold.points[0].position;
     for (const auto& [round, other] : {std::pair{patch.a, patch.b}, std::pair{patch.b, patch.a}}) {
       if (std::holds_alternative<Sphere>(model.shape(bodies[round]))) {
         const bool on_face = other == patch.b ? patch.manifold.face_of_b : patch.manifold.face_of_a;
         if (on_face) {
-          until = rim(other, motions[round], other == patch.a ? n : Vector3(-n));
+          until = rim(other, motions[round], other == patch.a ? n : Vector3(-n), at);
         } else if (const Shape& shape = model.shape(bodies[other]);
                    !std::holds_alternative<Sphere>(shape) && !alike(patch.a, patch.b)) {
           return "a ball slides along an edge or a round side";
@@ -199,7 +160,7 @@ struct Guards {
       Motion point = motions[a_points ? patch.a : patch.b];
       point.position[0] = patch.manifold.points[0].position;
       if (patch.manifold.face_of_a != patch.manifold.face_of_b) {
-        until = a_points ? rim(patch.b, point, -n) : rim(patch.a, point, n);
+        until = a_points ? rim(patch.b, point, -n, at) : rim(patch.a, point, n, at);
       }
       return {};
     }
@@ -218,7 +179,7 @@ struct Guards {
     for (const std::size_t k : {patch.a, patch.b}) {
       if (mode.velocities[k].angular.isZero(
               0.0)) {  // a body that spins is carried under its middle
-        until = std::min(until, rim(k, *point, k == patch.a ? n : Vector3(-n)));
+        until = std::min(until, rim(k, *point, k == patch.a ? n : Vector3(-n), at));
       }
     }
     return {};
@@ -227,11 +188,47 @@ struct Guards {
 
 }  // namespace
 
-std::string guard_times(const Model& model, std::span<const BodyIndex> bodies,
+std::string meets_elsewhere(const EventRun& run, const TouchingPair& pair, const Moving& a,
+                            const Moving& b, Instant t, double duration, double& until) {
+  double meets = infinity;
+  for (const bool of_a : {true, false}) {
+    const Moving& own = of_a ? a : b;
+    const Moving& other = of_a ? b : a;
+    const Shape& shape = run.model.shape(of_a ? pair.a : pair.b);
+    const Shape& other_shape = run.model.shape(of_a ? pair.b : pair.a);
+    const Pose pose = own.motion.pose(t - own.motion.start);
+    const Vector3 outward = of_a ? pair.normal : Vector3(-pair.normal);
+    const auto rest =
+        above_face(shape, pose.orientation.conjugate() * outward, pose.to_body(pair.at));
+    if (!rest) {
+      continue;
+    }
+    if (own.spins || (other.spins && !std::holds_alternative<Sphere>(other_shape))) {
+      meets = 0.0;  // how it turns is not followed here
+      continue;
+    }
+    const MovingShape part{*rest, own.motion}, whole{other_shape, other.motion};
+    const bool sooner = shape_rank(*rest) <= shape_rank(other_shape);
+    const TimeOfImpact met = run.detector.time_of_impact(
+        sooner ? part : whole, sooner ? whole : part, {t, duration}, run.options.toi_tolerance);
+    if (met.status != ToiStatus::separated) {
+      meets = std::min(meets, met.t_lo);
+    }
+  }
+  if (meets <= at_once * run.epoch()) {
+    return run.names(pair.a, pair.b) +
+           " touch in one place and meet in another, which one pair cannot (parts of a mesh or "
+           "compound can be bodies of their own)";
+  }
+  until = std::min(until, meets);
+  return {};
+}
+
+std::string guard_times(const EventRun& run, std::span<const BodyIndex> bodies,
                         std::span<const BodyState> states, const ContactGroup& group,
                         const FlatMode& mode, double duration, std::vector<double>& until) {
   until.assign(group.patches.size(), infinity);
-  Guards guards{model, bodies, group, mode, duration, {}};
+  Guards guards{run, run.model, bodies, group, mode, duration, {}};
   if (guards.rigid()) {
     return {};
   }

@@ -77,8 +77,16 @@ bool EventModes::settle_driven(Gathered found, Instant t, const Adopt& adopt) {
   if (driven.slip != Slip::sticks) {
     Motion point = driven.motion;
     point.position[0] = pressed(1.0);
-    driven.until = std::min(driven.until, face_exit_time(run_.model.shape(surface), under, point,
-                                                         m.normal, driven.motion.duration));
+    driven.until =
+        std::min(driven.until, face_exit_time(run_.model.shape(surface), under, point, m.normal,
+                                              m.points[0].position, driven.motion.duration));
+    Motion slides = driven.motion;
+    slides.start = t;
+    why_not_ = meets_elsewhere(run_, {body, surface, Vector3(-n), m.points[0].position}, {slides},
+                               {under}, t, slides.duration, driven.until);
+    if (!why_not_.empty()) {
+      return false;
+    }
   }
   mode.velocities[k].linear = driven.velocity;
   mode.accelerations[k].linear += driven.pushes;
@@ -159,6 +167,7 @@ bool EventModes::settle_curved(const Gathered& found, Instant t, const Adopt& ad
   // The point where the forces act: along their sum from the middle down to the face.
   Motion point = motion;
   const BodyIndex surface = found.bodies[1 - k];
+  const Vector3& at = patch->manifold.points[0].position;
   double until = curve.duration;
   if (!round) {
     const Vector3 down = n * n.dot(patch->manifold.points[0].position - motion.position[0]);
@@ -166,13 +175,19 @@ bool EventModes::settle_curved(const Gathered& found, Instant t, const Adopt& ad
       point.position[j] += down.norm() * patch->friction * Vector3(curve.direction[j]);
     }
     point.position[0] += down;
-    until = std::min(
-        until, face_exit_time(run_.model.shape(found.bodies[k]), motion, point, n, curve.duration));
+    until = std::min(until, face_exit_time(run_.model.shape(found.bodies[k]), motion, point, n, at,
+                                           curve.duration));
   }
   until = std::min(until, face_exit_time(run_.model.shape(surface), motions_.of(surface), point, n,
-                                         curve.duration));
+                                         at, curve.duration));
   if (until <= at_once * run_.epoch() && until < curve.duration) {
     why_not_ = "a body begins to turn: it tips, or its support is beside its centre";
+    return false;
+  }
+  const Moving slides{motion, round};
+  why_not_ = meets_elsewhere(run_, {found.bodies[k], surface, Vector3(-n), at}, slides,
+                             {motions_.of(surface)}, t, curve.duration, until);
+  if (!why_not_.empty()) {
     return false;
   }
   FlatMode mode;

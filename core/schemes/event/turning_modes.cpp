@@ -54,6 +54,13 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
   Gathered found;
   Turning turning;
   if (!make_room(seeds, t, options, found, turning)) {
+    const bool of_parts = std::any_of(found.bodies.begin(), found.bodies.end(), [&](BodyIndex i) {
+      const Shape& shape = run_.model.shape(i);
+      return std::holds_alternative<Mesh>(shape) || std::holds_alternative<Compound>(shape);
+    });
+    if (of_parts && !flat.empty()) {
+      why_not_ = flat + "; meshes and compounds are kept in touch at faces only";
+    }
     return false;
   }
   why_not_ = add_rims(found, turning);
@@ -236,7 +243,7 @@ std::string EventModes::add_touches(Gathered& found, Turning& turning) const {
     const Pose& at_a = found.states[patch.a].pose;
     const Pose& at_b = found.states[patch.b].pose;
     if (!corners_a || !corners_b) {
-      return fmt::format("{} touch, one turns, and its shape is round along a rim",
+      return fmt::format("{} touch, one turns, and one is round along a rim, a mesh or a compound",
                          run_.names(a, b));
     }
     TurningPair pair{patch.a,

@@ -1,6 +1,7 @@
 #include "core/schemes/shared/support.hpp"
 
 #include "core/archive.hpp"
+#include "core/contacts/face_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -65,6 +66,73 @@ int face_axis(const Quaternion& q_WB, const Vector3& normal) {
   return -1;
 }
 
+/// p - q in the frame of a body that does not turn.
+Polynomial<3> in_frame(const Quaternion& orientation, const Polynomial<3>& p,
+                       const Polynomial<3>& q) {
+  Polynomial<3> x;
+  x.resize(std::max(p.degree(), q.degree()));
+  for (int k = 0; k <= x.degree(); ++k) {
+    Vector3 c = k <= p.degree() ? Vector3(p[k]) : Vector3(Vector3::Zero());
+    c -= k <= q.degree() ? Vector3(q[k]) : Vector3(Vector3::Zero());
+    x[k] = orientation.conjugate() * c;
+  }
+  return x;
+}
+
+/// The rim of a face of several convex pieces, and the way of a point, both in the body's frame.
+struct Rim {
+  const std::vector<FacePart>& parts;
+  double slack;  ///< pieces meet where planes differ by roundoff, m
+  Polynomial<3> way;
+  double duration;
+
+  [[nodiscard]] bool inside(const FacePart& part, const Vector3& x) const {
+    const Vector3 out = x - part.middle;
+    return std::all_of(part.sides.begin(), part.sides.end(),
+                       [&](const TouchRim::Side& side) {
+                         return side.normal.dot(x) - side.offset <= slack;
+                       }) &&
+           (part.radius == 0.0 ||
+            (out - part.axis * part.axis.dot(out)).norm() <= part.radius + slack);
+  }
+
+  /// First time in [lo, hi] beyond a piece: the control points of a curve (its Bernstein form) hold
+  /// the curve, and what is convex holds it with them.
+  [[nodiscard]] double leaves(const FacePart& part, double lo, double hi, int depth) const {
+    std::array<Polynomial<3>::Value, Polynomial<3>::max_degree + 1> b;
+    bernstein<3>(way, lo, hi, b);
+    if (std::all_of(b.begin(), b.begin() + way.degree() + 1,
+                    [&](const Vector3& x) { return inside(part, x); })) {
+      return infinity;
+    }
+    const double middle = 0.5 * (lo + hi);
+    if (!inside(part, b[0]) || depth == 0 || !(lo < middle && middle < hi)) {
+      return lo;
+    }
+    const double early = leaves(part, lo, middle, depth - 1);
+    return std::isfinite(early) ? early : leaves(part, middle, hi, depth - 1);
+  }
+
+  /// From piece to piece, always on that which is left last.
+  [[nodiscard]] double passed() const {
+    constexpr int halvings = 60;
+    double t = 0.0;
+    for (std::size_t hops = 0; hops <= 2 * parts.size() && t < duration; ++hops) {
+      double last = t;
+      for (const FacePart& part : parts) {
+        if (inside(part, way(t))) {
+          last = std::max(last, leaves(part, t, duration, halvings));
+        }
+      }
+      if (last == t) {
+        return t;
+      }
+      t = last;
+    }
+    return t < duration ? t : infinity;
+  }
+};
+
 }  // namespace
 
 double first_positive(const Polynomial<3>& f, double duration) {
@@ -106,27 +174,38 @@ std::optional<Support> find_support(const Model& model, BodyIndex ball, const Ve
   return Support{surface, height > 0.0 ? face : Vector3(-face), std::abs(height)};
 }
 
-double face_exit_time(const Shape& surface, const Motion& surface_motion, const Motion& ball_motion,
-                      const Vector3& normal, double duration) {
-  const auto* box = std::get_if<Box>(&surface);
-  if (box == nullptr) {
+double face_exit_time(const Shape& surface, const Motion& surface_motion, const Motion& point,
+                      const Vector3& normal, const Vector3& at, double duration) {
+  const Quaternion q = surface_motion.orientation(0.0);
+  if (const auto* box = std::get_if<Box>(&surface)) {
+    const int skipped = face_axis(q, normal);
+    double earliest = infinity;
+    for (int k = 0; k < 3; ++k) {
+      if (k == skipped) {
+        continue;
+      }
+      for (const double side : {-1.0, 1.0}) {
+        const Vector3 axis = q * Vector3(side * Vector3::Unit(k));
+        const Polynomial<3> beyond =
+            along(point.position, surface_motion.position, axis, -box->half_extents[k]);
+        earliest = std::min(earliest, first_positive(beyond, duration));
+      }
+    }
+    return earliest;
+  }
+  if (!std::isfinite(bounding_radius(surface))) {
     return infinity;
   }
-  const Quaternion q = surface_motion.orientation(0.0);
-  const int skipped = face_axis(q, normal);
-  double earliest = infinity;
-  for (int k = 0; k < 3; ++k) {
-    if (k == skipped) {
-      continue;
-    }
-    for (const double side : {-1.0, 1.0}) {
-      const Vector3 axis = q * Vector3(side * Vector3::Unit(k));
-      const Polynomial<3> beyond =
-          along(ball_motion.position, surface_motion.position, axis, -box->half_extents[k]);
-      earliest = std::min(earliest, first_positive(beyond, duration));
+  const Pose pose{surface_motion.position[0], q};
+  for (const Vector3& outward : {normal, Vector3(-normal)}) {
+    const auto parts = parts_of_face(surface, q.conjugate() * outward, pose.to_body(at));
+    if (!parts.empty()) {
+      return Rim{parts, 1e-12 * bounding_radius(surface),
+                 in_frame(q, point.position, surface_motion.position), duration}
+          .passed();
     }
   }
-  return earliest;
+  return 0.0;
 }
 
 double lift_off_time(const Motion& surface_motion, const Vector3& normal, double mass,

@@ -29,10 +29,13 @@ struct Support {
                                                   const Motion& surface_motion, double s,
                                                   const Vector3& normal);
 
-/// When the ball's centre passes an edge of the face, within `duration` from both motions' common
-/// start, s; infinite if it does not.
+/// When a point passes the rim of the face of `surface` with this normal (either way; world), that
+/// is touched at `at` (world, m), within `duration` from both motions' common start, s; infinite
+/// if it does not, 0 if it is beyond already or there is no such face. A face of a mesh is all its
+/// triangles in one plane, of a compound all faces of its parts in one plane, whether they hang
+/// together or not. The surface does not turn.
 [[nodiscard]] double face_exit_time(const Shape& surface, const Motion& surface_motion,
-                                    const Motion& ball_motion, const Vector3& normal,
+                                    const Motion& point, const Vector3& normal, const Vector3& at,
                                     double duration);
 
 /// When a driven surface draws away faster than the force on the ball (N) can follow: the first
