@@ -1,6 +1,7 @@
 #include "core/contacts/turning_forces.hpp"
 
 #include "core/circular.hpp"
+#include "core/contacts/least_norm.hpp"
 #include "core/contacts/nonnegative_solve.hpp"
 
 #include <Eigen/Geometry>
@@ -27,6 +28,10 @@ constexpr int rays_of_cone = 16;
 /// the greatest. It only proposes: what is accepted was verified.
 constexpr int most_sweeps = 2000;
 constexpr double settled = 1e-10;
+
+/// Forces that are off by this part of the largest load are what was asked for, as they are where
+/// a mode is found: what ends one is several times as much.
+constexpr double carried = 1e-11;
 
 /// Solves K x = -q, where K may be singular: a damped K, which is not, is solved for what is left,
 /// again and again. It is several times as fast as an orthogonal decomposition. Where forces are
@@ -207,9 +212,10 @@ double TurningForces::cone_violation(std::span<const FrictionChoice> choices,
   return worst;
 }
 
-/// Finds forces inside the cones that do the same; tells how far the nearest are from doing so.
-double TurningForces::nearest_in_cones(std::span<const FrictionChoice> choices, Solution& found) {
-  std::vector<Line> rays;
+TurningForces::Rays TurningForces::rays_of(std::span<const FrictionChoice> choices,
+                                           const Solution& found) const {
+  Rays out;
+  std::vector<Line>& rays = out.lines;
   for (std::size_t k = 0; k < choices.size(); ++k) {
     if (!pushes(choices[k])) {
       continue;
@@ -234,15 +240,16 @@ double TurningForces::nearest_in_cones(std::span<const FrictionChoice> choices, 
     }
   }
   const auto rows = static_cast<Index>(6 * state_.bodies.size());
-  MatrixXd A = MatrixXd::Zero(rows, static_cast<Index>(rays.size()));
-  VectorXd b(rows);
+  MatrixXd& A = out.gives;
+  VectorXd& b = out.asked;
+  A = MatrixXd::Zero(rows, static_cast<Index>(rays.size()));
+  b.resize(rows);
   for (std::size_t i = 0; i < state_.bodies.size(); ++i) {
     const auto at = static_cast<Index>(6 * i);
     const Twist& with = found.accelerations[i];
     b.segment<3>(at) = with.linear - state_.loads[i].linear;
     b.segment<3>(at + 3) = state_.radius[i] * (with.angular - state_.loads[i].angular);
   }
-  std::vector<double> length;
   for (std::size_t c = 0; c < rays.size(); ++c) {
     const Touch& touch = state_.touches[rays[c].touch];
     const auto column = static_cast<Index>(c);
@@ -253,39 +260,107 @@ double TurningForces::nearest_in_cones(std::span<const FrictionChoice> choices, 
     };
     place(touch.a, rays[c].to_a);
     place(touch.b, rays[c].to_b);
-    length.push_back(std::max(A.col(column).norm(), 1e-300));
-    A.col(column) /= length.back();
+    out.length.push_back(std::max(A.col(column).norm(), 1e-300));
+    A.col(column) /= out.length.back();
   }
-  const NonnegativeSolution answer = solve_nonnegative(A, b, 0);
-  solves_ += answer.solves;
+  return out;
+}
+
+void TurningForces::put_forces(const Rays& rays, const VectorXd& x, Solution& found) {
   std::fill(found.force.begin(), found.force.end(), Vector3::Zero());
-  for (std::size_t c = 0; c < rays.size(); ++c) {
-    found.force[rays[c].touch] += answer.x[static_cast<Index>(c)] / length[c] * rays[c].direction;
+  for (std::size_t c = 0; c < rays.lines.size(); ++c) {
+    found.force[rays.lines[c].touch] +=
+        x[static_cast<Index>(c)] / rays.length[c] * rays.lines[c].direction;
+  }
+}
+
+/// Finds forces inside the cones that do the same; tells how far the nearest are from doing so.
+double TurningForces::nearest_in_cones(std::span<const FrictionChoice> choices, Solution& found,
+                                       std::vector<std::size_t>* carry) {
+  const Rays rays = rays_of(choices, found);
+  const NonnegativeSolution answer = solve_nonnegative(rays.gives, rays.asked, 0);
+  solves_ += answer.solves;
+  put_forces(rays, answer.x, found);
+  if (carry != nullptr) {
+    carry->clear();
+    for (std::size_t c = 0; c < rays.lines.size(); ++c) {
+      if (answer.x[static_cast<Index>(c)] > 0.0) {
+        carry->push_back(c);
+      }
+    }
   }
   return answer.residual / load_;
 }
 
-TurningForces::Solution TurningForces::verified(std::span<const FrictionChoice> choices) {
+/// Whether the rays that carried the load before do so still, pressing all of them. One solution
+/// then stands for the search, which takes one for each ray.
+bool TurningForces::carried_as_before(std::span<const FrictionChoice> choices, Solution& found,
+                                      const std::vector<std::size_t>& carry) {
+  const Rays rays = rays_of(choices, found);
+  if (carry.empty() || carry.back() >= rays.lines.size()) {
+    return false;
+  }
+  MatrixXd part(rays.gives.rows(), static_cast<Index>(carry.size()));
+  for (std::size_t k = 0; k < carry.size(); ++k) {
+    part.col(static_cast<Index>(k)) = rays.gives.col(static_cast<Index>(carry[k]));
+  }
+  ++solves_;
+  // Of what hardly carries anything roundoff may be below zero.
+  const VectorXd of_part = least_norm(part, rays.asked).cwiseMax(0.0);
+  const double off = (rays.asked - part * of_part).lpNorm<Eigen::Infinity>() / load_;
+  if (!(off <= carried)) {
+    return false;
+  }
+  VectorXd x = VectorXd::Zero(rays.gives.cols());
+  for (std::size_t k = 0; k < carry.size(); ++k) {
+    x[static_cast<Index>(carry[k])] = of_part[static_cast<Index>(k)];
+  }
+  put_forces(rays, x, found);
+  found.violation = off;
+  return true;
+}
+
+/// The most by which what opens would close.
+double TurningForces::closing(std::span<const FrictionChoice> choices,
+                              const Solution& found) const {
+  double worst = 0.0;
+  for (std::size_t k = 0; k < choices.size(); ++k) {
+    if (!pushes(choices[k])) {
+      worst = std::max(worst, -gap_acceleration(k, found.accelerations) / load_);
+    }
+  }
+  return worst;
+}
+
+TurningForces::Solution TurningForces::verified(std::span<const FrictionChoice> choices,
+                                                const Verifying& options) {
+  constexpr double contradicts = 1e-9;
+  const auto is_beyond = [](const Solution& s) {
+    return s.violation > FrictionForces::solve_roundoff;
+  };
   Solution found = solve(choices, !several());
   found.violation = cone_violation(choices, found);
-  if (found.violation > FrictionForces::solve_roundoff && several()) {
+  // Whatever forces are redundant, accelerations are the same.
+  if (const double closes = closing(choices, found); closes > options.most) {
+    found.violation = std::max(found.violation, closes);
+    return found;
+  }
+  std::vector<std::size_t>* const carry = options.carry;
+  const bool as_before = carry != nullptr && is_beyond(found) && found.residual < contradicts &&
+                         carried_as_before(choices, found, *carry);
+  if (!as_before && is_beyond(found) && several()) {
     found = solve(choices);
     found.violation = cone_violation(choices, found);
   }
-  if (found.violation > FrictionForces::solve_roundoff && found.residual < 1e-9) {
+  if (!as_before && is_beyond(found) && found.residual < contradicts) {
     Solution other = found;
-    const double off = nearest_in_cones(choices, other);
+    const double off = nearest_in_cones(choices, other, carry);
     if (off < found.violation) {
       other.violation = off;
       found = std::move(other);
     }
   }
-  for (std::size_t k = 0; k < choices.size(); ++k) {
-    if (!pushes(choices[k])) {
-      found.violation =
-          std::max(found.violation, -gap_acceleration(k, found.accelerations) / load_);
-    }
-  }
+  found.violation = std::max(found.violation, closing(choices, found));
   return found;
 }
 

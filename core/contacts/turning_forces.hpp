@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -39,6 +40,14 @@ class TurningForces {
     double residual = 0.0;
   };
 
+  struct Verifying {
+    /// Where what opens closes by more than this forces are not looked for, in units of the load.
+    double most = std::numeric_limits<double>::infinity();
+    /// Which of the rays of the cones carried the load when nearly the same was asked last: they
+    /// are tried first, and what carries it now is told. Null: not known.
+    std::vector<std::size_t>* carry = nullptr;
+  };
+
   explicit TurningForces(const TurningState& state);
 
   [[nodiscard]] const std::vector<TouchNow>& now() const { return now_; }
@@ -53,7 +62,8 @@ class TurningForces {
   [[nodiscard]] bool several() const { return free_ > 2; }
   /// The same with its `violation`: forces within the cones are looked for where those of least
   /// norm are not.
-  [[nodiscard]] Solution verified(std::span<const FrictionChoice> choices);
+  [[nodiscard]] Solution verified(std::span<const FrictionChoice> choices,
+                                  const Verifying& options);
   /// What projected Gauss-Seidel finds likely, from what is known to slide or to stick.
   [[nodiscard]] std::vector<FrictionChoice> propose(std::span<const FrictionChoice> as_it_moves);
 
@@ -75,7 +85,21 @@ class TurningForces {
   void push(const Line& line, double force, std::vector<Twist>& accelerations) const;
   [[nodiscard]] double cone_violation(std::span<const FrictionChoice> choices,
                                       const Solution& found) const;
-  [[nodiscard]] double nearest_in_cones(std::span<const FrictionChoice> choices, Solution& found);
+  [[nodiscard]] double closing(std::span<const FrictionChoice> choices,
+                               const Solution& found) const;
+  /// Rays that stand for the cones, and what a unit of each gives to the bodies.
+  struct Rays {
+    std::vector<Line> lines;
+    Eigen::MatrixXd gives;       ///< by column, each of length 1
+    std::vector<double> length;  ///< by ray, before that
+    Eigen::VectorXd asked;
+  };
+  [[nodiscard]] Rays rays_of(std::span<const FrictionChoice> choices, const Solution& found) const;
+  static void put_forces(const Rays& rays, const Eigen::VectorXd& x, Solution& found);
+  [[nodiscard]] double nearest_in_cones(std::span<const FrictionChoice> choices, Solution& found,
+                                        std::vector<std::size_t>* carry);
+  [[nodiscard]] bool carried_as_before(std::span<const FrictionChoice> choices, Solution& found,
+                                       const std::vector<std::size_t>& carry);
   void sweep(std::size_t k, const FrictionChoice& as_is, std::array<double, 3>& force,
              std::vector<Twist>& accelerations) const;
 

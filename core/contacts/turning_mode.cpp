@@ -221,7 +221,7 @@ class Search {
   }
 
   bool accept(const std::vector<Choice>& choices) {
-    Solution found = forces_.verified(choices);
+    Solution found = forces_.verified(choices, {.most = turning_roundoff});
     if (found.residual > contradiction || found.violation > turning_roundoff) {
       return false;
     }

@@ -297,7 +297,7 @@ class Step {
   // --- What ends the mode -----------------------------------------------------------------------
 
   /// What the mode is at its end for at s; `step`: it is not.
-  [[nodiscard]] TurningEnd ends_at(double s) const {
+  [[nodiscard]] TurningEnd ends_at(double s) {
     const TurningState state = at(s);
     TurningForces forces(state);
     for (std::size_t k = 0; k < state.touches.size(); ++k) {
@@ -305,7 +305,7 @@ class Step {
         return TurningEnd::forces;
       }
     }
-    const auto found = forces.verified(directed(mode_, forces.now(), slow_));
+    const auto found = forces.verified(directed(mode_, forces.now(), slow_), {.carry = &carry_});
     double beyond = 0.0;
     // What opens may close again: that is a strike, watched by its gap.
     for (std::size_t k = 0; k < state.touches.size(); ++k) {
@@ -506,7 +506,8 @@ class Step {
   double slow_;
   std::vector<std::size_t> free_;
   std::vector<BodyState> before_;
-  std::vector<Motion> raw_;  ///< by free body
+  std::vector<Motion> raw_;         ///< by free body
+  std::vector<std::size_t> carry_;  ///< which rays of cones carried the load when asked last
   TurningStep step_;
 };
 
