@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 
 namespace kairos::ccd {
 namespace {
@@ -100,6 +101,22 @@ CellGrid::CellGrid(const std::array<std::int64_t, 3>& counts,
       first_(first),
       cells_(scattered<Cell>(static_cast<std::size_t>(counts[0] * counts[1] * counts[2]))) {}
 
+void CellGrid::mark(const CellIndex& low, const CellIndex& high) {
+  CellIndex from{};
+  CellIndex to{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    from[k] = std::max<std::int64_t>(low[k] - first_[k], 0);
+    to[k] = std::min(high[k] - first_[k], count_[k] - 1);
+  }
+  for (std::int64_t z = from[2]; z <= to[2]; ++z) {
+    for (std::int64_t y = from[1]; y <= to[1]; ++y) {
+      for (std::int64_t x = from[0]; x <= to[0]; ++x) {
+        cells_[at(x, y, z)].reached = 1;
+      }
+    }
+  }
+}
+
 void CellGrid::insert(const CellIndex& cell, BodyIndex i) {
   Cell* at = &cells_[place(cell[0], cell[1], cell[2])];
   if (at->count == room) {
@@ -184,7 +201,7 @@ void CellGrid::block(const CellIndex& cell, const CellIndex& wide, std::vector<I
   const bool turns = first[0] + 2 * wide[0] >= count_[0];
   const auto take = [&end, &chains](const Cell& of) {
     // Both places are copied, though most cells have none or one: this saves a branch.
-    std::copy_n(of.bodies.begin(), room, end);
+    std::memcpy(end, of.bodies.data(), sizeof of.bodies);
     end += of.count;
     chains &= of.next;
   };

@@ -53,6 +53,21 @@ class CellGrid {
   void around(const CellIndex& cell, std::vector<Id>& out) const;
   /// Of those around `now`, the ones that are not around `before`.
   void entered(const CellIndex& before, const CellIndex& now, std::vector<Id>& out) const;
+  /// Notes that something that is in no cell reaches these cells, as far as they lie where bodies
+  /// began; for good.
+  void mark(const CellIndex& low, const CellIndex& high);
+  /// Whether something may reach the cell.
+  [[nodiscard]] bool may_be_reached(const CellIndex& cell) const {
+    std::array<std::int64_t, 3> at_home{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      at_home[k] = cell[k] - first_[k];
+      if (!(static_cast<std::uint64_t>(at_home[k]) < static_cast<std::uint64_t>(count_[k]))) {
+        return true;
+      }
+    }
+    return cells_[at(at_home[0], at_home[1], at_home[2])].reached != 0;
+  }
+
   /// Bodies in all cells from `low` to `high`.
   void within(const CellIndex& low, const CellIndex& high, std::vector<Id>& out) const;
 
@@ -62,7 +77,8 @@ class CellGrid {
   /// Small, for most hold none or one. What finds no room is in a chain of further ones.
   struct Cell {
     Id next = none;
-    std::uint32_t count = 0;
+    std::uint16_t count = 0;
+    std::uint16_t reached = 0;  ///< see `mark`
     std::array<Id, room> bodies{};
   };
 

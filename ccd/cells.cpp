@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace kairos::ccd {
 namespace {
@@ -108,7 +109,9 @@ class Cells final : public Neighbourhood {
       leave(i);
     }
     places_[i].at = Place::in_box;
-    return large_.enter(i, moving, t, until);
+    const Instant crosses = large_.enter(i, moving, t, until);
+    mark(i);
+    return crosses;
   }
 
   std::optional<Instant> enter(BodyIndex i, const BallFlight& flight, Instant t,
@@ -117,11 +120,25 @@ class Cells final : public Neighbourhood {
   }
 
   void near(BodyIndex i, std::vector<Neighbour>& out) override {
+    found_.clear();
+    near_apart(i, found_, out);
+    tell_themselves(i, found_, out);
+  }
+
+  void near_apart(BodyIndex i, std::vector<CellGrid::Id>& themselves,
+                  std::vector<Neighbour>& out) override {
     if (places_[i].at == Place::in_cell) {
-      found_.clear();
-      grid_.around(places_[i].cell(), found_);
-      tell(i, out);
-      large_.boxes().overlapping(reach(places_[i].cell()), out);
+      const CellIndex cell = places_[i].cell();
+      if (periodic_ == nullptr) {
+        grid_.around(cell, themselves);
+      } else {
+        images_.clear();
+        grid_.around(cell, images_);
+        tell_images(i, images_, out);
+      }
+      if (may_be_reached(cell)) {
+        large_.boxes().overlapping(reach(cell), out);
+      }
     } else if (places_[i].at == Place::in_box) {
       large_.near(i, out);
       near_box(large_.swept(i), out);
@@ -130,7 +147,9 @@ class Cells final : public Neighbourhood {
 
   Instant cross(BodyIndex i, const MovingShape& moving, Instant t, Instant until,
                 std::vector<Neighbour>& out) override {
-    if (const auto crosses = cross_along(i, MotionWay{moving.motion}, t, until, out)) {
+    found_.clear();
+    if (const auto crosses = cross_along(i, MotionWay{moving.motion}, t, until, found_, out)) {
+      tell_themselves(i, found_, out);
       return *crosses;
     }
     const Instant crosses = enter(i, moving, t, until);
@@ -139,8 +158,9 @@ class Cells final : public Neighbourhood {
   }
 
   std::optional<Instant> cross(BodyIndex i, const BallFlight& flight, Instant t, Instant until,
+                               std::vector<CellGrid::Id>& themselves,
                                std::vector<Neighbour>& out) override {
-    return cross_along(i, FlightWay{flight}, t, until, out);
+    return cross_along(i, FlightWay{flight}, t, until, themselves, out);
   }
 
   void go_on_as(BodyIndex i, const Image& n) override {
@@ -161,6 +181,8 @@ class Cells final : public Neighbourhood {
         archive.require(places_[i].at != Place::in_box || large_.is_known(i));
         if (places_[i].at == Place::in_cell) {
           grid_.insert(places_[i].cell(), i);
+        } else if (places_[i].at == Place::in_box) {
+          mark(i);
         }
       }
     }
@@ -201,6 +223,7 @@ class Cells final : public Neighbourhood {
   /// Nothing: it was in no cell, or is in none any more.
   template <typename Way>
   std::optional<Instant> cross_along(BodyIndex i, const Way& way, Instant t, Instant until,
+                                     std::vector<CellGrid::Id>& themselves,
                                      std::vector<Neighbour>& out) {
     const double s = t - way.start();
     if (places_[i].at != Place::in_cell || !fits(i, way, s)) {
@@ -211,9 +234,16 @@ class Cells final : public Neighbourhood {
     const CellIndex now = cell_of(p);
     if (now != before) {
       move(i, now);
-      found_.clear();
-      grid_.entered(before, now, found_);
-      tell(i, out);
+      if (periodic_ == nullptr) {
+        grid_.entered(before, now, themselves);
+      } else {
+        images_.clear();
+        grid_.entered(before, now, images_);
+        tell_images(i, images_, out);
+      }
+      if (!may_be_reached(now)) {
+        return exit(i, way, p, t, until);
+      }
       const Aabb known = reach(before);
       boxes_.clear();
       large_.boxes().overlapping(reach(now), boxes_);
@@ -238,8 +268,11 @@ class Cells final : public Neighbourhood {
   [[nodiscard]] CellIndex cell_of(const Vector3& p) const {
     CellIndex cell;
     for (int k = 0; k < 3; ++k) {
+      // The floor; coordinates of bodies in cells are small enough.
+      const double x = p[k] * layout_.per_width[k];
+      const auto towards_zero = static_cast<std::int64_t>(x);
       cell[static_cast<std::size_t>(k)] =
-          static_cast<std::int64_t>(std::floor(p[k] * layout_.per_width[k]));
+          towards_zero - (static_cast<double>(towards_zero) > x ? 1 : 0);
     }
     return cell;
   }
@@ -284,9 +317,14 @@ class Cells final : public Neighbourhood {
       const double below = p[k] - (corner(cell, k) - allowed);
       const double above = layout_.width[k] + 2.0 * allowed - below;
       least = std::min({least, below, above});
-      if (!bends) {
-        const double c = way.half_acceleration(k);
-        const double v = way.velocity(k, s);
+      if (bends) {
+        continue;
+      }
+      const double c = way.half_acceleration(k);
+      const double v = way.velocity(k, s);
+      if (c == 0.0) {
+        stays = std::min(stays, v > 0.0 ? above / v : v < 0.0 ? below / -v : infinity);
+      } else {
         stays = std::min({stays, time_to_rise(v, c, above), time_to_rise(-v, -c, below)});
       }
     }
@@ -314,22 +352,43 @@ class Cells final : public Neighbourhood {
     }
   }
 
-  /// Appends the bodies in `found_` but i, each as its image around the cell of i: bodies fewer
-  /// than four cells apart on the torus have one.
-  void tell(BodyIndex i, std::vector<Neighbour>& out) const {
-    if (periodic_ == nullptr) {
-      const std::size_t before = out.size();
-      out.resize(before + found_.size());
-      Neighbour* end = out.data() + before;
-      for (const CellGrid::Id j : found_) {
-        end->body = j;
-        end += j == i ? 0 : 1;
+  /// Whether the tree may hold something near a body in the cell.
+  [[nodiscard]] bool may_be_reached(const CellIndex& cell) const {
+    return periodic_ != nullptr || grid_.may_be_reached(cell);
+  }
+  /// Body i is in the tree: the cells that it reaches.
+  void mark(BodyIndex i) {
+    CellIndex low{};
+    CellIndex high{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [first, last] = cells_near(large_.swept(i), k);
+      const std::int64_t end = layout_.first[k] + grid_.count(k) - 1;
+      low[k] = layout_.first[k];
+      if (first > static_cast<double>(low[k])) {
+        low[k] = first < static_cast<double>(end) ? static_cast<std::int64_t>(first) : end;
       }
-      out.resize(static_cast<std::size_t>(end - out.data()));
-      return;
+      high[k] = last < static_cast<double>(end)
+                    ? static_cast<std::int64_t>(std::max(last, static_cast<double>(low[k])))
+                    : end;
     }
+    grid_.mark(low, high);
+  }
+
+  /// Appends these bodies but i.
+  static void tell_themselves(BodyIndex i, const std::vector<CellGrid::Id>& found,
+                              std::vector<Neighbour>& out) {
+    for (const CellGrid::Id j : found) {
+      if (j != i) {
+        out.push_back({j});
+      }
+    }
+  }
+  /// Appends these bodies but i, each as its image around the cell of i: bodies fewer than four
+  /// cells apart on the torus have one.
+  void tell_images(BodyIndex i, const std::vector<CellGrid::Id>& found_there,
+                   std::vector<Neighbour>& out) const {
     const CellIndex cell = places_[i].cell();
-    for (const CellGrid::Id j : found_) {
+    for (const CellGrid::Id j : found_there) {
       if (j == i) {
         continue;
       }
@@ -346,18 +405,23 @@ class Cells final : public Neighbourhood {
     }
   }
 
+  /// Numbers of the cells along an axis whose surroundings a box reaches, and one more on both
+  /// sides, as these quotients are rounded: perhaps infinite.
+  [[nodiscard]] std::pair<double, double> cells_near(const Aabb& swept, std::size_t k) const {
+    const double beyond = layout_.margin + layout_.radius + layout_.slack;
+    const auto axis = static_cast<Eigen::Index>(k);
+    const double per_width = layout_.per_width[axis];
+    return {std::floor((swept.lower[axis] - beyond) * per_width) - 1.0,
+            std::floor((swept.upper[axis] + beyond) * per_width) + 1.0};
+  }
+
   /// Bodies in the cells whose surroundings a box reaches.
   void near_box(const Aabb& swept, std::vector<Neighbour>& out) {
-    const double beyond = layout_.margin + layout_.radius + layout_.slack;
     CellIndex low{};
     CellIndex high{};
     std::array<bool, 3> everywhere{};
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto axis = static_cast<Eigen::Index>(k);
-      // One cell more on both sides, as these quotients are rounded.
-      const double per_width = layout_.per_width[axis];
-      const double first = std::floor((swept.lower[axis] - beyond) * per_width) - 1.0;
-      const double last = std::floor((swept.upper[axis] + beyond) * per_width) + 1.0;
+      const auto [first, last] = cells_near(swept, k);
       constexpr double countable = 0x1p60;
       everywhere[k] = !(std::abs(first) < countable && std::abs(last) < countable);
       if (!everywhere[k]) {
@@ -373,9 +437,9 @@ class Cells final : public Neighbourhood {
         to[k] = grid_.count(k) - 1;
       }
     }
-    found_.clear();
-    grid_.within(from, to, found_);
-    for (const BodyIndex j : found_) {
+    images_.clear();
+    grid_.within(from, to, images_);
+    for (const BodyIndex j : images_) {
       tell_within(j, low, high, everywhere, out);
     }
   }
@@ -410,6 +474,7 @@ class Cells final : public Neighbourhood {
   const PeriodicBox* periodic_ = nullptr;
   std::vector<Neighbour> boxes_;  ///< scratch
   std::vector<CellGrid::Id> found_;
+  std::vector<CellGrid::Id> images_;
 };
 
 }  // namespace

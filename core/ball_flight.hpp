@@ -39,23 +39,40 @@ class FlightsBeside {
   void begin(const BallFlight& one) {
     one_ = &one;
     size_ = 0;
+    alike_ = false;
+  }
+  /// The same, and all that come are as large as the one, and accelerated as it is.
+  void begin_alike(const BallFlight& one) {
+    begin(one);
+    alike_ = true;
   }
   /// One more.
   void add(const BallFlight& other) {
-    const std::size_t k = size_++ % block;
-    if (size_ > blocks_.size() * block) {
-      blocks_.emplace_back();
-    }
+    const std::size_t k = size_ % block;
+    add_alike(other.position, other.velocity, other.start);
     Block& to = blocks_[(size_ - 1) / block];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      to.position[axis][k] = other.position.data()[axis];
-      to.velocity[axis][k] = other.velocity.data()[axis];
-    }
-    to.lag[k] = other.start - one_->start;
     to.radius[k] = other.radius;
     to.comparable[k] = one_->acceleration == other.acceleration ? 1.0 : 0.0;
   }
 
+  /// One more that is as large as the one, and accelerated as it is.
+  void add_alike(const Vector3& position, const Vector3& velocity, const Instant& start) {
+    const std::size_t k = size_ % block;
+    const std::size_t number = size_ / block;
+    if (number == blocks_.size()) {
+      blocks_.emplace_back();
+    }
+    ++size_;
+    Block& to = blocks_[number];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      to.position[axis][k] = position.data()[axis];
+      to.velocity[axis][k] = velocity.data()[axis];
+    }
+    to.lag[k] = start - one_->start;
+  }
+
+  /// Whether what is told of their radii and of how they are accelerated is that of the one.
+  [[nodiscard]] bool alike() const { return alike_; }
   /// How many there are.
   [[nodiscard]] std::size_t size() const { return size_; }
   /// Beside whom.
@@ -67,6 +84,7 @@ class FlightsBeside {
 
  private:
   const BallFlight* one_ = nullptr;
+  bool alike_ = false;
   std::size_t size_ = 0;
   std::vector<Block> blocks_;  ///< as many as there have had to be
 };

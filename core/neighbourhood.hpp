@@ -7,6 +7,7 @@
 #include "core/periodic_box.hpp"
 #include "core/state.hpp"
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -46,13 +47,21 @@ class Neighbourhood {
   /// Every body that i could meet before it crosses, appended in any order; also all that touch it
   /// now. Some of them it cannot meet.
   virtual void near(BodyIndex i, std::vector<Neighbour>& out) = 0;
+  /// The same, where some that are near as themselves are told apart, by their numbers; these may
+  /// hold i too.
+  virtual void near_apart(BodyIndex i, std::vector<std::uint32_t>& /*themselves*/,
+                          std::vector<Neighbour>& others) {
+    near(i, others);
+  }
   /// Body i, on the motion with which it entered, has come to the end of what was told of it: those
   /// that it could meet from here on and of which nobody was told, appended. Returns as `enter`.
   virtual Instant cross(BodyIndex i, const MovingShape& moving, Instant t, Instant until,
                         std::vector<Neighbour>& out) = 0;
-  /// The same as of `enter`.
+  /// The same as of `enter`, and as `near_apart` tells it.
   virtual std::optional<Instant> cross(BodyIndex /*i*/, const BallFlight& /*flight*/, Instant /*t*/,
-                                       Instant /*until*/, std::vector<Neighbour>& /*out*/) {
+                                       Instant /*until*/,
+                                       std::vector<std::uint32_t>& /*themselves*/,
+                                       std::vector<Neighbour>& /*others*/) {
     return std::nullopt;
   }
   /// Body i is counted on as its image n, on the motion that it has.

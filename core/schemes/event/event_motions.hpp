@@ -50,6 +50,12 @@ class EventMotions {
   }
   /// Whether besides nothing ties it, and it is alone in its island: all that most of a gas is.
   [[nodiscard]] bool is_plain(BodyIndex i) const { return (ways_[i] & all_bits) == all_bits; }
+  /// Whether besides it is as large as most, and falls as they do.
+  [[nodiscard]] bool is_usual(BodyIndex i) const {
+    return (ways_[i] & (all_bits | usual_bit)) == (all_bits | usual_bit);
+  }
+  /// Its flight, beside that of another such ball.
+  void add_usual(BodyIndex i, FlightsBeside& beside) const { table_.add_usual(i, beside); }
   /// The ball that bounds body i, on its way; its radius is infinite if it is on no parabola, or
   /// the body is unbounded.
   [[nodiscard]] BallFlight flight(BodyIndex i) const {

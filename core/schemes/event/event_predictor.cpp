@@ -16,6 +16,9 @@ inline namespace core {
 EventPredictor::EventPredictor(EventRun& run, const EventMotions& motions, const Grasps& grasps,
                                const ContactGraph& graph, const Method& method)
     : run_(run), motions_(motions), grasps_(grasps), graph_(graph), since_(run.model.size()) {
+  const Scene& scene = run.model.scene();
+  bounds_hold_ = run.detector.info().proves && run.options.toi_tolerance == 0.0;
+  only_motions_ = scene.joints.empty() && !scene.periodic && run.model.grips().empty();
   if (!run.model.asks_every_pair() || run.model.scene().periodic) {
     neighbourhood_ = method.neighbourhood(run.model, run.options.toi_tolerance);
     return;
@@ -41,12 +44,13 @@ void EventPredictor::predict(BodyIndex i, Instant t, BodyIndex except) {
     return;
   }
   enter(i, t);
+  themselves_.clear();
   neighbours_.clear();
-  neighbourhood_->near(i, neighbours_);
+  neighbourhood_->near_apart(i, themselves_, neighbours_);
   // Of its images the others have not been asked about: it had not entered yet.
   std::erase_if(neighbours_,
                 [except](const Neighbour& j) { return j.body == except && is_zero(j.image); });
-  survey(i, before_all);
+  survey(i, before_all, except);
   run_.agenda.file(i);
 }
 
@@ -60,10 +64,11 @@ void EventPredictor::cross(BodyIndex i, Instant t) {
   if (!neighbourhood_) {
     return;  // no body crosses here, but a forged checkpoint may say so
   }
+  themselves_.clear();
   neighbours_.clear();
   std::optional<Instant> next;
   if (motions_.flies_parabola(i)) {
-    next = neighbourhood_->cross(i, motions_.flight(i), t, last_of(i), neighbours_);
+    next = neighbourhood_->cross(i, motions_.flight(i), t, last_of(i), themselves_, neighbours_);
   }
   if (!next) {
     next = neighbourhood_->cross(i, motions_.moving(i), t, last_of(i), neighbours_);
@@ -77,8 +82,9 @@ void EventPredictor::renew(BodyIndex i, Instant t) {
   if (!neighbourhood_) {
     return;  // no body is filed here, but a forged checkpoint may say so
   }
+  themselves_.clear();
   neighbours_.clear();
-  neighbourhood_->near(i, neighbours_);
+  neighbourhood_->near_apart(i, themselves_, neighbours_);
   survey(i, t);
   run_.agenda.file(i);
 }
@@ -110,6 +116,7 @@ void EventPredictor::predict_all(Instant t) {
   for (const BodyIndex i : run_.agenda.by_name()) {
     enter(i, t);
   }
+  themselves_.clear();
   for (const BodyIndex i : run_.agenda.by_name()) {
     neighbours_.clear();
     neighbourhood_->near(i, neighbours_);
@@ -125,8 +132,20 @@ void EventPredictor::predict_all(Instant t) {
   neighbours_ = {};  // a wall has every body as its neighbour: too large to keep
 }
 
-/// Asks when i meets each of `neighbours_`.
-void EventPredictor::survey(BodyIndex i, Instant known) {
+/// Asks when i meets each of `themselves_` but `except`, and each of `neighbours_`.
+void EventPredictor::survey(BodyIndex i, Instant known, BodyIndex except) {
+  if (only_motions_ && motions_.is_usual(i)) {
+    survey_usual(i, known, except);
+  } else {
+    for (const BodyIndex j : themselves_) {
+      if (j != i && j != except) {
+        neighbours_.push_back({j});
+      }
+    }
+  }
+  if (neighbours_.empty()) {
+    return;
+  }
   const bool flies = motions_.flies(i);
   const bool periodic = run_.model.scene().periodic.has_value();
   balls_.clear();
@@ -138,14 +157,13 @@ void EventPredictor::survey(BodyIndex i, Instant known) {
     }
   }
   const bool meets_plain = motions_.is_plain(i) && run_.model.scene().joints.empty();
-  for (const Neighbour& j : neighbours_) {
+  std::erase_if(neighbours_, [&](const Neighbour& j) {
     const bool meets = meets_plain && motions_.is_plain(j.body) && j.body != i;
     if (!meets && !run_.model.interacts(i, j.body)) {
-      continue;
+      return true;
     }
     if (!flies || !motions_.flies(j.body)) {
-      predict_near(i, j, known);
-      continue;
+      return false;
     }
     balls_.push_back(j);
     if (periodic && !is_zero(j.image)) {
@@ -155,20 +173,56 @@ void EventPredictor::survey(BodyIndex i, Instant known) {
     } else {
       beside_.add(motions_.flight(j.body));
     }
-  }
+    return true;
+  });
   if (!balls_.empty()) {
     meet_balls(i, known);
   }
+  if (flies) {  // all of them, before one is asked about: their order does not matter then
+    std::erase_if(neighbours_, [&](const Neighbour& j) { return is_beyond(i, j.body); });
+  }
+  for (const Neighbour& j : neighbours_) {
+    predict_near(i, j, known);
+  }
 }
 
-/// Asks about `balls_`, earliest possible meeting first, and ends when no other can be earlier:
-/// body i is asked again when its earliest meeting comes up.
+/// The same of those of `themselves_` that are balls like i; appends the others to `neighbours_`.
+void EventPredictor::survey_usual(BodyIndex i, Instant known, BodyIndex except) {
+  own_ = motions_.flight(i);
+  beside_.begin_alike(own_);
+  usual_.clear();
+  for (const std::uint32_t j : themselves_) {
+    if (j == i || j == except) {
+      continue;
+    }
+    if (motions_.is_usual(j)) {
+      motions_.look_up(j);
+      usual_.push_back(j);
+    } else {
+      neighbours_.push_back({j});
+    }
+  }
+  if (usual_.empty()) {
+    return;
+  }
+  for (const std::uint32_t j : usual_) {
+    motions_.add_usual(j, beside_);
+  }
+  filter_beside();
+  near_.clear();
+  for (std::size_t k = 0; k < usual_.size(); ++k) {
+    if (clear_[k] < std::numeric_limits<double>::infinity()) {
+      const Instant later = std::max(own_.start, motions_.start_of(usual_[k]));
+      near_.push_back({{usual_[k]}, later + clear_[k], true});
+    }
+  }
+  ask_near(i, known);
+}
+
+/// Asks about `balls_`.
 void EventPredictor::meet_balls(BodyIndex i, Instant known) {
   const Instant start = motions_.start_of(i);
-  if (clear_.size() < beside_.blocks().size() * FlightsBeside::block) {
-    clear_.resize(beside_.blocks().size() * FlightsBeside::block);
-  }
-  run_.detector.clear_times(beside_, run_.options.toi_tolerance, clear_);
+  filter_beside();
   near_.clear();
   for (std::size_t k = 0; k < balls_.size(); ++k) {
     if (clear_[k] < std::numeric_limits<double>::infinity()) {
@@ -176,16 +230,97 @@ void EventPredictor::meet_balls(BodyIndex i, Instant known) {
       near_.push_back({balls_[k], later + clear_[k]});
     }
   }
+  ask_near(i, known);
+}
+
+/// For how long those in `beside_` are clear of the one.
+void EventPredictor::filter_beside() {
+  const std::size_t room =
+      (beside_.size() + FlightsBeside::block - 1) / FlightsBeside::block * FlightsBeside::block;
+  if (clear_.size() < room) {
+    clear_.resize(room);
+  }
+  run_.detector.clear_times(beside_, run_.options.toi_tolerance, clear_);
+}
+
+/// Asks about `near_`, earliest possible meeting first, and ends when no other can be earlier: body
+/// i is asked again when its earliest meeting comes up.
+void EventPredictor::ask_near(BodyIndex i, Instant known) {
   while (!near_.empty()) {
     const auto next = std::min_element(
         near_.begin(), near_.end(), [](const Near& x, const Near& y) { return x.clear < y.clear; });
     if (run_.agenda.meeting(i) < next->clear) {
       return;
     }
-    predict_near(i, next->who, known);
+    if (next->usual) {
+      ask_usual(i, next->who.body, known);
+    } else {
+      predict_near(i, next->who, known);
+    }
     *next = near_.back();
     near_.pop_back();
   }
+}
+
+/// `ask` of two usual balls of which nothing but their motions says when they meet: what that finds
+/// out beside is known.
+void EventPredictor::ask_usual(BodyIndex i, BodyIndex j, Instant known) {
+  const Instant from = std::max(since_[i], since_[j]);
+  if (!graph_.empty()) {
+    return ask(i, {j}, from, known);
+  }
+  const double duration = run_.epoch_end() - from;
+  if (!(duration > 0.0)) {
+    return;
+  }
+  const auto [a, b] = run_.agenda.before(i, j) ? std::pair{i, j} : std::pair{j, i};
+  const auto toi =
+      run_.detector.ball_impact(motions_.flight(a), motions_.flight(b), {from, duration});
+  if (!toi) {
+    return ask(i, {j}, from, known);
+  }
+  ++run_.cost.toi_queries;
+  run_.cost.toi_evaluations += toi->evaluations;
+  if (toi->status == ToiStatus::impact) {
+    const Instant t = from + toi->t_lo;
+    if (known < t) {
+      run_.agenda.meet(i, j, t, toi->t_hi - toi->t_lo);
+    }
+  } else if (toi->status != ToiStatus::separated) {
+    take_answer({a, b, from, duration, known, true, i}, *toi);
+  }
+}
+
+/// Whether ball i, which flies, meets this wall later than what is known of its meetings, for sure,
+/// or not before the epoch ends: then it need not be asked about. From its height and speed above
+/// the plane, all made worse by far more than what a detector that proves leaves between the two.
+bool EventPredictor::is_beyond(BodyIndex i, BodyIndex wall) const {
+  const auto* const half_space = std::get_if<HalfSpace>(&run_.model.shape(wall));
+  if (half_space == nullptr || !bounds_hold_ || !keeps_meeting(i, wall)) {
+    return false;
+  }
+  constexpr double worse = 1e-6;
+  const BallFlight ball = motions_.flight(i);
+  const Pose& pose = motions_.now(wall).pose;  // it is fixed
+  const Vector3 up = half_space_normal(*half_space, pose);
+  const double sizes = ball.position.lpNorm<1>() + pose.position.lpNorm<1>() + ball.radius;
+  const double height = up.dot(ball.position - pose.position) - ball.radius - worse * sizes;
+  const double falls = -up.dot(ball.velocity) + worse * ball.velocity.lpNorm<1>();
+  const double faster =
+      std::max(0.0, -up.dot(ball.acceleration) + worse * ball.acceleration.lpNorm<1>());
+  if (!(height > 0.0)) {
+    return false;
+  }
+  // height = falls t + faster t^2 / 2, without cancellation.
+  const double root = std::sqrt(falls * falls + 2.0 * faster * height);
+  double clear = std::numeric_limits<double>::infinity();
+  if (falls > 0.0) {
+    clear = 2.0 * height / (falls + root);
+  } else if (faster > 0.0) {
+    clear = (root - falls) / faster;
+  }
+  const Instant earliest = ball.start + (1.0 - worse) * clear;
+  return run_.agenda.meeting(i) < earliest || run_.epoch_end() < earliest;
 }
 
 /// Moves a flight to its periodic image n.
@@ -444,6 +579,11 @@ void EventPredictor::predict_meeting(const PairQuery& query) {
   if (!run_.model.is_free(a) && !run_.model.is_free(b)) {
     return;  // asked only where no pair is left out; nothing can come of it
   }
+  take_answer(query, toi);
+}
+
+void EventPredictor::take_answer(const PairQuery& query, const TimeOfImpact& toi) {
+  const auto [a, b] = std::pair{query.a, query.b};
   const bool field = run_.model.is_field(a) || run_.model.is_field(b);
   switch (toi.status) {
     case ToiStatus::separated:

@@ -4,6 +4,7 @@
 #include "core/schemes/event/event_motions.hpp"
 #include "core/schemes/shared/grasps.hpp"
 
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -71,6 +72,7 @@ class EventPredictor {
   struct Near {
     Neighbour who;
     Instant clear;
+    bool usual = false;  ///< as i is, and not an image
   };
   static constexpr Instant before_all{-std::numeric_limits<double>::infinity(), 0.0};
 
@@ -80,8 +82,14 @@ class EventPredictor {
   }
   void enter(BodyIndex i, Instant t);
   void predict_near(BodyIndex i, const Neighbour& j, Instant known = before_all);
-  void survey(BodyIndex i, Instant known);
+  void survey(BodyIndex i, Instant known) { survey(i, known, i); }
+  void survey(BodyIndex i, Instant known, BodyIndex except);
+  void survey_usual(BodyIndex i, Instant known, BodyIndex except);
   void meet_balls(BodyIndex i, Instant known);
+  void filter_beside();
+  void ask_near(BodyIndex i, Instant known);
+  void ask_usual(BodyIndex i, BodyIndex j, Instant known);
+  [[nodiscard]] bool is_beyond(BodyIndex i, BodyIndex wall) const;
   [[nodiscard]] bool keeps_meeting(BodyIndex i, BodyIndex with) const;
   void ask(BodyIndex i, const Neighbour& j, Instant from, Instant known);
   void push(const PairQuery& of, double after, DueKind kind, double bracket = 0.0,
@@ -93,6 +101,7 @@ class EventPredictor {
   void move_to(const Image& n, BallFlight& flight) const;
   [[nodiscard]] bool stay_clear(const PairQuery& of);
   void predict_meeting(const PairQuery& query);
+  void take_answer(const PairQuery& query, const TimeOfImpact& toi);
   [[nodiscard]] TimeOfImpact time_of_impact(const PairQuery& of, double duration);
   [[nodiscard]] Motion motion_of(BodyIndex i, const PairQuery& of) const;
   [[nodiscard]] double allowed_gap(const PairQuery& of) const;
@@ -113,8 +122,13 @@ class EventPredictor {
   std::unique_ptr<Neighbourhood> neighbourhood_;  ///< null: every partner is a neighbour
   /// Without that, by body: what it can interact with.
   std::vector<std::vector<BodyIndex>> partners_;
-  std::vector<Instant> since_;         ///< by body: from when on its pairs are asked
-  std::vector<Neighbour> neighbours_;  ///< scratch, as what follows
+  std::vector<Instant> since_;  ///< by body: from when on its pairs are asked
+  /// Nothing but their motions says when two plain balls meet.
+  bool only_motions_ = false;
+  bool bounds_hold_ = false;               ///< a detector tells no contact before there is one
+  std::vector<std::uint32_t> themselves_;  ///< scratch, as what follows
+  std::vector<Neighbour> neighbours_;
+  std::vector<std::uint32_t> usual_;
   std::vector<Neighbour> balls_;
   BallFlight own_;
   FlightsBeside beside_;  ///< that

@@ -59,6 +59,10 @@ class MotionTable {
   [[nodiscard]] BallFlight usual_flight(BodyIndex i) const { return of(throws_[i], usual_); }
   [[nodiscard]] Instant start_of_flight(BodyIndex i) const { return throws_[i].start; }
   [[nodiscard]] const Vector3& usual_acceleration() const { return usual_.acceleration; }
+  /// The flight of such a body, beside one of such a body.
+  void add_usual(BodyIndex i, FlightsBeside& beside) const {
+    beside.add_alike(throws_[i].position, throws_[i].velocity, throws_[i].start);
+  }
   /// The flight of body i is about to be asked for.
   void look_up([[maybe_unused]] BodyIndex i) const {
 #if defined(__GNUC__)
