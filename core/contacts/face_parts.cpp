@@ -43,7 +43,7 @@ std::array<Vector3, 3> corners(const CollisionMesh& mesh, const Triangle& t) {
 
 /// How high a convex shape reaches along a unit direction, m.
 double reach(const Shape& shape, const Vector3& n) {
-  const double across = std::hypot(n.x(), n.z());
+  const double across = std::sqrt(n.x() * n.x() + n.z() * n.z());
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
     return sphere->radius;
   }

@@ -231,7 +231,7 @@ def waits_for_its_time(slurm, task):
 def test_a_slurm_array_loses_nothing_with_a_task_requeued(program, slurm, tmp_path):
     """A controller and two daemons; a task at work is killed and requeued, and goes on."""
     spec = tmp_path / "spec.toml"
-    spec.write_text(SPEC.replace("repeats = 5", "repeats = 1500"))  # some seconds
+    spec.write_text(SPEC.replace("repeats = 5", "repeats = 6000"))  # some seconds
     shards = tmp_path / "shards"
     job = array_of(slurm, spec, 4, shards)
     rows = shards / "1" / "spec.rows"
@@ -253,7 +253,7 @@ def test_a_slurm_array_loses_nothing_with_a_task_requeued(program, slurm, tmp_pa
     assert rows.stat().st_size > kept
     kairos.merge(shards, out=tmp_path / "merged")
     kairos.sweep(spec, out=tmp_path / "one")
-    assert len(kairos.Sweep(tmp_path / "merged").runs) == 2 * 8 * 1500
+    assert len(kairos.Sweep(tmp_path / "merged").runs) == 2 * 8 * 6000
     assert differences(tmp_path / "one", tmp_path / "merged") == []
 
 

@@ -276,6 +276,27 @@ void EventContacts::press_together(Event& event, const ContactManifold& manifold
       return Eigen::Vector2d(t1.dot(difference), t2.dot(difference));
     };
     const Vector3 c = event.contact.point;
+    if (manifold.size == 2) {  // an edge: it leaves flat where its ends are not turned apart
+      const Vector3 along =
+          (manifold.points[1].position - manifold.points[0].position).normalized();
+      const Vector3 across = along.cross(n);
+      const auto opens = [&](const Vector3& x) {
+        const Eigen::Vector2d s = spins(x);
+        return across.dot(t1) * s[0] + across.dot(t2) * s[1];
+      };
+      const double change = opens(c + along) - opens(c);
+      if (change == 0.0) {
+        return;
+      }
+      const double step = -opens(c) / change;
+      const Vector3 pressed = c + step * along;
+      event.contact.point =
+          carries_at(manifold, pressed) ? pressed : nearest_point(manifold, pressed);
+      if (event.contact.point != pressed || std::abs(step) <= 16.0 * epsilon * c.norm()) {
+        return;
+      }
+      continue;
+    }
     const Eigen::Vector2d here = spins(c);
     Eigen::Matrix2d change;
     change.col(0) = spins(c + t1) - here;
