@@ -8,6 +8,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kairos {
@@ -60,6 +61,9 @@ class EventContacts {
   void strike_jointed(Event& event);
   [[nodiscard]] bool rest_on_joints(const Event& event, Instant t);
   void part_jointed(BodyIndex i, Instant t);
+  [[nodiscard]] std::pair<BodyState, BodyState> would_leave(const Event& event,
+                                                            const BodyInertia& inertia_a,
+                                                            const BodyInertia& inertia_b) const;
   [[nodiscard]] bool strikes_flat(Event& event);
   void press_together(Event& event, const ContactManifold& manifold);
   [[nodiscard]] bool still_approaching(const Event& event, double approach, Instant t);

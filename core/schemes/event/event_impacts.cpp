@@ -178,6 +178,18 @@ void EventContacts::strike(Event& event) {
   run_.ledger.add(EnergyLine::conveyor_and_hand, energy.conveyor_and_hand);
 }
 
+/// How the law lets the two of an impact leave, with these inertias: the states of a and of b.
+std::pair<BodyState, BodyState> EventContacts::would_leave(const Event& event,
+                                                           const BodyInertia& inertia_a,
+                                                           const BodyInertia& inertia_b) const {
+  BodyState a = motions_.now(event.a);
+  BodyState b = motions_.now(event.b);
+  Vector3 unused = Vector3::Zero();
+  run_.law.apply(event.contact, {run_.model.body(event.a), inertia_a, a, unused},
+                 {run_.model.body(event.b), inertia_b, b, unused});
+  return {a, b};
+}
+
 /// Whether faces or edges that land flat, with friction, leave flat. The points of the patch can
 /// press so that nothing turns while the centre of pressure is inside the patch. If it would be
 /// outside, the point of the patch nearest to it takes the whole impact.
@@ -209,28 +221,25 @@ bool EventContacts::strikes_flat(Event& event) {
   // What spins slides elsewhere in another direction: friction acts where the patch is pressed.
   const bool spins = !(at_a.twist.angular - at_b.twist.angular).isZero(0.0);
   for (int round = 0; round < most_presses; ++round) {
-    BodyState after_a = at_a;
-    BodyState after_b = at_b;
-    Vector3 unused = Vector3::Zero();
-    run_.law.apply(event.contact, {run_.model.body(a), inertia_a, after_a, unused},
-                   {run_.model.body(b), inertia_b, after_b, unused});
-    const auto push = [](const BodyState& before, const BodyState& after) {
-      return Vector3(after.twist.linear - before.twist.linear);
+    const std::pair<BodyState, BodyState> after = would_leave(event, inertia_a, inertia_b);
+    const auto push = [](const BodyState& was, const BodyState& is) {
+      return Vector3(is.twist.linear - was.twist.linear);
     };
-    if (rotates(a) && rotates(b) && !is_along(push(at_b, after_b), at_a.pose, at_b.pose)) {
+    if (rotates(a) && rotates(b) && !is_along(push(at_b, after.second), at_a.pose, at_b.pose)) {
       press_together(event, manifold);
       return false;
     }
     double moved = 0.0;
-    for (const auto& [i, before, after] : {std::tuple{a, &at_a, &after_a}, {b, &at_b, &after_b}}) {
+    for (const auto& [i, was, is] :
+         {std::tuple{a, &at_a, &after.first}, {b, &at_b, &after.second}}) {
       if (!rotates(i)) {
         continue;
       }
-      const Vector3 p = push(*before, *after);
+      const Vector3 p = push(*was, *is);
       if (p.dot(n) == 0.0) {
         return false;
       }
-      const Vector3& x = before->pose.position;
+      const Vector3& x = was->pose.position;
       const Vector3 pressed = x + p * ((event.contact.point - x).dot(n) / p.dot(n));
       if (!carries_at(manifold, pressed)) {
         event.contact.point = nearest_point(manifold, pressed);
@@ -259,16 +268,15 @@ void EventContacts::press_together(Event& event, const ContactManifold& manifold
   const BodyInertia& inertia_a = run_.model.inertia(a);
   const BodyInertia& inertia_b = run_.model.inertia(b);
   const Vector3& n = event.contact.normal;
-  const Vector3 t1 = n.unitOrthogonal();
+  // An edge is pressed along itself, and leaves flat where its ends are not turned apart.
+  const bool edge = manifold.size == 2;
+  const Vector3 t1 = edge ? (manifold.points[1].position - manifold.points[0].position).normalized()
+                          : n.unitOrthogonal();
   const Vector3 t2 = n.cross(t1);
   const Matrix3 inverse_a = inertia_a.inverse(at_a.pose.orientation);
   const Matrix3 inverse_b = inertia_b.inverse(at_b.pose.orientation);
   for (int round = 0; round < most_presses; ++round) {
-    BodyState after_a = at_a;
-    BodyState after_b = at_b;
-    Vector3 unused = Vector3::Zero();
-    run_.law.apply(event.contact, {run_.model.body(a), inertia_a, after_a, unused},
-                   {run_.model.body(b), inertia_b, after_b, unused});
+    const BodyState after_b = would_leave(event, inertia_a, inertia_b).second;
     const Vector3 p = inertia_b.mass * (after_b.twist.linear - at_b.twist.linear);
     const auto spins = [&](const Vector3& x) {
       const Vector3 difference = inverse_a * (x - at_a.pose.position).cross(p) +
@@ -276,37 +284,24 @@ void EventContacts::press_together(Event& event, const ContactManifold& manifold
       return Eigen::Vector2d(t1.dot(difference), t2.dot(difference));
     };
     const Vector3 c = event.contact.point;
-    if (manifold.size == 2) {  // an edge: it leaves flat where its ends are not turned apart
-      const Vector3 along =
-          (manifold.points[1].position - manifold.points[0].position).normalized();
-      const Vector3 across = along.cross(n);
-      const auto opens = [&](const Vector3& x) {
-        const Eigen::Vector2d s = spins(x);
-        return across.dot(t1) * s[0] + across.dot(t2) * s[1];
-      };
-      const double change = opens(c + along) - opens(c);
-      if (change == 0.0) {
-        return;
-      }
-      const double step = -opens(c) / change;
-      const Vector3 pressed = c + step * along;
-      event.contact.point =
-          carries_at(manifold, pressed) ? pressed : nearest_point(manifold, pressed);
-      if (event.contact.point != pressed || std::abs(step) <= 16.0 * epsilon * c.norm()) {
-        return;
-      }
-      continue;
-    }
     const Eigen::Vector2d here = spins(c);
     Eigen::Matrix2d change;
     change.col(0) = spins(c + t1) - here;
     change.col(1) = spins(c + t2) - here;
-    const double det = change.determinant();
-    if (!(std::abs(det) > epsilon * change.squaredNorm())) {
-      return;
+    Eigen::Vector2d step = Eigen::Vector2d::Zero();
+    if (edge) {
+      if (change(1, 0) == 0.0) {
+        return;
+      }
+      step[0] = -here[1] / change(1, 0);
+    } else {
+      const double det = change.determinant();
+      if (!(std::abs(det) > epsilon * change.squaredNorm())) {
+        return;
+      }
+      step = {-(change(1, 1) * here[0] - change(0, 1) * here[1]) / det,
+              -(change(0, 0) * here[1] - change(1, 0) * here[0]) / det};
     }
-    const Eigen::Vector2d step(-(change(1, 1) * here[0] - change(0, 1) * here[1]) / det,
-                               -(change(0, 0) * here[1] - change(1, 0) * here[0]) / det);
     const Vector3 pressed = c + step[0] * t1 + step[1] * t2;
     if (!carries_at(manifold, pressed)) {
       event.contact.point = nearest_point(manifold, pressed);
