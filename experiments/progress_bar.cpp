@@ -9,52 +9,50 @@
 namespace kairos::experiments {
 
 ProgressBar::ProgressBar(std::string label, std::size_t total)
-    : label_(std::move(label)),
-      total_(total),
-      terminal_(isatty(STDERR_FILENO) == 1),
-      start_(std::chrono::steady_clock::now()),
-      drawn_(start_) {
-  if (terminal_) {
-    draw();  // the first piece of work may take long
+    : label_(std::move(label)), total_(total), start_(std::chrono::steady_clock::now()) {
+  if (isatty(STDERR_FILENO) == 1) {
+    drawer_ = std::jthread([this](const std::stop_token& stop) { draw_until(stop); });
   }
 }
 
 ProgressBar::~ProgressBar() {
-  if (terminal_) {
+  if (drawer_.joinable()) {
+    drawer_.request_stop();
+    drawer_.join();
     fmt::print(stderr, "\r\033[K");
   }
 }
 
 void ProgressBar::advance() {
   const std::lock_guard lock(mutex_);
-  show(done_ + 1);
+  ++done_;
 }
 
 void ProgressBar::reach(std::size_t done) {
   const std::lock_guard lock(mutex_);
-  show(done);
-}
-
-void ProgressBar::show(std::size_t done) {
   done_ = done;
-  if (due() || (terminal_ && done_ == total_)) {
-    drawn_ = std::chrono::steady_clock::now();
-    draw();
-  }
 }
 
-bool ProgressBar::due() const {
-  return terminal_ && std::chrono::steady_clock::now() - drawn_ > std::chrono::milliseconds(100);
+void ProgressBar::draw_until(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  while (!stop.stop_requested()) {
+    draw();
+    stopped_.wait_for(lock, stop, std::chrono::milliseconds(200), [] { return false; });
+  }
 }
 
 void ProgressBar::draw() const {
   constexpr std::size_t width = 30;
   const std::size_t filled = total_ == 0 ? width : width * done_ / total_;
-  const double elapsed = std::chrono::duration<double>(drawn_ - start_).count();
-  const double left =
-      elapsed * static_cast<double>(total_ - done_) / static_cast<double>(done_ == 0 ? 1 : done_);
-  fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {}/{} {:.0f} s left", label_, "", filled, "",
-             width - filled, done_, total_, left);
+  const double elapsed =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  const auto done = static_cast<double>(done_);
+  const std::string time =
+      done_ == 0
+          ? fmt::format("{:.0f} s so far", elapsed)
+          : fmt::format("{:.0f} s left", elapsed * (static_cast<double>(total_) - done) / done);
+  fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {}/{} {}", label_, "", filled, "", width - filled,
+             done_, total_, time);
   std::fflush(stderr);
 }
 

@@ -1,13 +1,16 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <mutex>
 #include <string>
+#include <thread>
 
 namespace kairos::experiments {
 
 /// How far long work has come, on stderr: a bar on a terminal, nothing in a pipe. Thread-safe.
+/// The bar is drawn five times a second whether or not anything gets done: one piece may take long.
 class ProgressBar {
  public:
   ProgressBar(std::string label, std::size_t total);
@@ -22,17 +25,16 @@ class ProgressBar {
   void reach(std::size_t done);
 
  private:
-  void show(std::size_t done);
+  void draw_until(const std::stop_token& stop);
   void draw() const;
-  [[nodiscard]] bool due() const;
 
   std::string label_;
   std::size_t total_;
   std::size_t done_ = 0;
-  bool terminal_;
   std::chrono::steady_clock::time_point start_;
-  std::chrono::steady_clock::time_point drawn_;
   std::mutex mutex_;
+  std::condition_variable_any stopped_;
+  std::jthread drawer_;
 };
 
 }  // namespace kairos::experiments
