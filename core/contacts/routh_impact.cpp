@@ -201,7 +201,8 @@ class Routh {
   }
 
   /// Follows sliding that turns, by a variable x with dp = |u_t| dx: in x, u_t decays without being
-  /// singular anywhere.
+  /// singular anywhere, at a rate of at most |W_tn| + mu |W_tt|. Steps are a hundredth of that: by
+  /// |W| they would be, with little friction, so short that an impact takes 1e5 of them.
   void turn() {
     using State = Eigen::Matrix<double, 8, 1>;  // u, p, work of both
     const auto rate = [&](const State& s) {
@@ -231,7 +232,7 @@ class Routh {
     };
     State s;
     s << course_.u, course_.p, course_.work, course_.rubbed;
-    const double h = 0.01 / ((1.0 + mu_) * W_.norm());
+    const double h = 0.01 / (W_.block<2, 1>(1, 0).norm() + mu_ * W_.block<2, 2>(1, 1).norm());
     for (int k = 0; k < most_steps; ++k) {
       State next = step(s, h);
       const bool end = ends(next);

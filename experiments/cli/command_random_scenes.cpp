@@ -9,8 +9,11 @@
 
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <string>
 #include <system_error>
+#include <vector>
 
 namespace kairos::experiments {
 namespace {
@@ -20,6 +23,7 @@ constexpr double most_stops = 0.05;
 
 struct RandomScenesCommand {
   SceneSurvey survey;
+  std::map<SceneKind, bool> asked;  ///< by its flag, at most one
   std::string out;
 
   void run() const;
@@ -91,9 +95,9 @@ void RandomScenesCommand::run() const {
   }
   // What starts in touch mostly ends in a contact that lasts, and balls that lose energy collapse
   // in clusters: stops are what is right there.
-  if (!survey.touching && !survey.balls &&
-      static_cast<double>(tally.of(Fate::stopped)) >
-          most_stops * static_cast<double>(tally.scenes)) {
+  const bool few_stop = survey.kind == SceneKind::any || survey.kind == SceneKind::shapes;
+  if (few_stop && static_cast<double>(tally.of(Fate::stopped)) >
+                      most_stops * static_cast<double>(tally.scenes)) {
     throw RunError(fmt::format("more than {} % of the scenes stopped", 100.0 * most_stops));
   }
 }
@@ -113,20 +117,26 @@ void add_random_scenes_command(Command& app) {
   random.add_option("--first", command->survey.first, "number of the first one")
       .check(whole_number(0, std::uint64_t{1} << 62))
       .capture_default_str();
-  Argument shapes = random.add_flag(
-      "--shapes", command->survey.shapes,
-      "scenes of all shapes: capsules, cylinders, cones, hulls, compounds, height fields, meshes");
-  Argument touching =
-      random.add_flag("--touching", command->survey.touching,
-                      "scenes that start in touch, or come to it: stacks, rows, grooves, corners, "
-                      "inclines, presses, inelastic clusters");
-  Argument balls =
-      random.add_flag("--balls", command->survey.balls,
-                      "scenes of many balls, some in a box that is repeated; each is run twice, "
-                      "with neighbours from cells and with every pair asked, to the same bits");
-  shapes.excludes(touching);
-  balls.excludes(touching);
-  balls.excludes(shapes);
+  std::vector<Argument> kinds;
+  const auto flag = [&](SceneKind of, const std::string& what) {
+    kinds.push_back(random.add_flag(fmt::format("--{}", to_string(of)), command->asked[of], what));
+  };
+  flag(SceneKind::shapes,
+       "scenes of all shapes: capsules, cylinders, cones, hulls, compounds, height fields, meshes");
+  flag(SceneKind::touching,
+       "scenes that start in touch, or come to it: stacks, rows, grooves, corners, inclines, "
+       "presses, inelastic clusters");
+  flag(SceneKind::rough, "the same with friction between bodies, from none to rough");
+  flag(SceneKind::jointed,
+       "scenes of bodies on joints: pendulums, chains, doors, cradles, what slides on a rail");
+  flag(SceneKind::balls,
+       "scenes of many balls, some in a box that is repeated; each is run twice, with neighbours "
+       "from cells and with every pair asked, to the same bits");
+  for (std::size_t a = 0; a < kinds.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      kinds[a].excludes(kinds[b]);
+    }
+  }
   random
       .add_option("--threads", command->survey.threads,
                   "0: one per core; results do not depend on it")
@@ -139,7 +149,14 @@ void add_random_scenes_command(Command& app) {
                   "written here and nothing else is kept")
       .type_name("DIR")
       .check(some_path());
-  random.callback([command] { command->run(); });
+  random.callback([command] {
+    for (const auto& [kind, is_asked] : command->asked) {
+      if (is_asked) {
+        command->survey.kind = kind;
+      }
+    }
+    command->run();
+  });
 }
 
 }  // namespace kairos::experiments

@@ -42,6 +42,9 @@ void write_body(std::string& out, const RandomBody& b) {
   if (b.restitution != 1.0) {
     line("restitution", fmt::format("{}", b.restitution));
   }
+  if (b.friction != 0.0) {
+    line("friction", fmt::format("{}", b.friction));
+  }
   if (!b.swing.isZero(0.0)) {
     out += "\n[body.drive]\n";
     line("amplitude", vector(b.swing));
@@ -49,6 +52,20 @@ void write_body(std::string& out, const RandomBody& b) {
     line("phase", fmt::format("{}", b.phase));
   }
   out += parts_toml(b);
+}
+
+void write_joint(std::string& out, const RandomJoint& joint) {
+  out += fmt::format("\n[[joint]]\nkind = \"{}\"\nbodies = [\"{}\"]\n", joint.kind,
+                     fmt::join(joint.bodies, "\", \""));
+  if (joint.kind != "weld" && (joint.kind != "rod" || joint.bodies.size() == 1)) {
+    out += fmt::format("anchor = {}\n", vector(joint.anchor));
+  }
+  if (joint.kind == "hinge" || joint.kind == "slider") {
+    out += fmt::format("axis = {}\n", vector(joint.axis));
+  }
+  if (joint.collide) {
+    out += "collide = true\n";
+  }
 }
 
 /// Makes one scene; its lengths are about 1, and scaled in the end.
@@ -196,6 +213,9 @@ std::string RandomScene::toml() const {
   }
   for (const RandomBody& b : bodies) {
     write_body(out, b);
+  }
+  for (const RandomJoint& joint : joints) {
+    write_joint(out, joint);
   }
   return out;
 }

@@ -23,6 +23,7 @@ struct RandomBody {
   Vector3 turned = Vector3::Zero();  ///< rotation vector at the start, rad
   Vector3 spin = Vector3::Zero();    ///< rad/s
   double restitution = 1.0;
+  double friction = 0.0;            ///< inf: rough
   Vector3 swing = Vector3::Zero();  ///< amplitude of a driven body, m; zero: nothing drives it
   double frequency = 0.0;           ///< Hz
   double phase = 0.0;
@@ -44,6 +45,15 @@ struct RandomBody {
   [[nodiscard]] double reach() const;
 };
 
+/// A joint of a random scene.
+struct RandomJoint {
+  std::string kind;                 ///< ball, hinge, slider, rod, weld
+  std::vector<std::string> bodies;  ///< one: the other side is the world
+  Vector3 anchor = Vector3::Zero();
+  Vector3 axis = Vector3::Zero();  ///< of a hinge or a slider
+  bool collide = false;
+};
+
 /// A valid scene that nobody thought of: what a person could have written, none of whose solids
 /// overlap at the start.
 struct RandomScene {
@@ -55,6 +65,7 @@ struct RandomScene {
   Vector3 low = Vector3::Zero();
   Vector3 high = Vector3::Zero();
   std::vector<RandomBody> bodies;
+  std::vector<RandomJoint> joints;
 
   /// As a scene file; digits that read back the same.
   [[nodiscard]] std::string toml() const;
@@ -72,6 +83,15 @@ struct RandomScene {
 /// other with little restitution, balls between walls that close. Moved, turned and scaled at
 /// random; solids touch, but do not overlap beyond roundoff.
 [[nodiscard]] RandomScene touching_scene(std::uint64_t seed, std::uint64_t index);
+
+/// The same with friction between bodies, from none to rough.
+[[nodiscard]] RandomScene rough_scene(std::uint64_t seed, std::uint64_t index);
+
+/// Bodies on joints: pendulums, chains that hang at one end or at both, doors, cradles, what slides
+/// on a rail, welded boxes, mechanisms that fly; with walls and bodies that they meet, driven hands
+/// that they hang from, with friction or without. No two overlap at the start, and all velocities
+/// are those of a turn of the whole mechanism.
+[[nodiscard]] RandomScene jointed_scene(std::uint64_t seed, std::uint64_t index);
 
 /// Balls, up to some two hundred, of one size or of several, light and heavy, thin or dense; in a
 /// room, in a box that is repeated along some axes, with gravity or without, with or without loss.

@@ -31,25 +31,54 @@ Tally run_block(const SceneSurvey& survey, std::uint64_t first, std::uint64_t co
   const double start = thread_seconds();
   for (std::uint64_t i = first; i < first + count; ++i) {
     const RandomScene scene = scene_of(survey, i);
-    tally.add(i, survey.balls ? try_by_two_searches(scene) : try_scene(scene));
+    tally.add(i, survey.kind == SceneKind::balls ? try_by_two_searches(scene) : try_scene(scene));
   }
   tally.seconds = thread_seconds() - start;
   return tally;
 }
 
 std::string survey_key(const SceneSurvey& survey) {
-  return fmt::format("kairos random-scenes 1{}{}{} seed {} first {} program {}",
-                     survey.touching ? " touching" : "", survey.shapes ? " shapes" : "",
-                     survey.balls ? " balls" : "", survey.seed, survey.first, program_identity());
+  const std::string_view kind = to_string(survey.kind);
+  return fmt::format("kairos random-scenes 1{}{} seed {} first {} program {}",
+                     kind.empty() ? "" : " ", kind, survey.seed, survey.first, program_identity());
 }
 
 }  // namespace
 
+std::string_view to_string(SceneKind kind) {
+  switch (kind) {
+    case SceneKind::any:
+      return "";
+    case SceneKind::touching:
+      return "touching";
+    case SceneKind::rough:
+      return "friction";
+    case SceneKind::jointed:
+      return "joints";
+    case SceneKind::shapes:
+      return "shapes";
+    case SceneKind::balls:
+      return "balls";
+  }
+  return "";
+}
+
 RandomScene scene_of(const SceneSurvey& survey, std::uint64_t number) {
-  return survey.touching ? touching_scene(survey.seed, number)
-         : survey.shapes ? shapes_scene(survey.seed, number)
-         : survey.balls  ? balls_scene(survey.seed, number)
-                         : random_scene(survey.seed, number);
+  switch (survey.kind) {
+    case SceneKind::any:
+      break;
+    case SceneKind::touching:
+      return touching_scene(survey.seed, number);
+    case SceneKind::rough:
+      return rough_scene(survey.seed, number);
+    case SceneKind::jointed:
+      return jointed_scene(survey.seed, number);
+    case SceneKind::shapes:
+      return shapes_scene(survey.seed, number);
+    case SceneKind::balls:
+      return balls_scene(survey.seed, number);
+  }
+  return random_scene(survey.seed, number);
 }
 
 Tally run_survey(const SceneSurvey& survey, const std::string& journal,

@@ -6,17 +6,28 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 
 namespace kairos::experiments {
+
+/// Of what kind random scenes are.
+enum class SceneKind {
+  any,       ///< `random_scene`
+  touching,  ///< `touching_scene`
+  rough,     ///< `rough_scene`
+  jointed,   ///< `jointed_scene`
+  shapes,    ///< `shapes_scene`
+  balls,     ///< `balls_scene`
+};
+/// The word that asks for it: "" for any.
+[[nodiscard]] std::string_view to_string(SceneKind kind);
 
 /// Which random scenes are to be run.
 struct SceneSurvey {
   std::uint64_t count = 1000;
   std::uint64_t seed = 1;
   std::uint64_t first = 0;
-  bool touching = false;    ///< `touching_scene` instead of `random_scene`
-  bool shapes = false;      ///< `shapes_scene` instead
-  bool balls = false;       ///< `balls_scene` instead
+  SceneKind kind = SceneKind::any;
   std::size_t threads = 0;  ///< 0: one per core; results do not depend on it
 };
 

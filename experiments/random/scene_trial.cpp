@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -30,8 +31,8 @@ Vector3 rounded(const Vector3& v, int digits) {
 }
 
 void simplify_numbers(RandomBody& b, int digits) {
-  for (double* x : {&b.radius, &b.mass, &b.restitution, &b.frequency, &b.phase, &b.length,
-                    &b.rounding, &b.unit, &b.spacing, &b.gyration}) {
+  for (double* x : {&b.radius, &b.mass, &b.restitution, &b.friction, &b.frequency, &b.phase,
+                    &b.length, &b.rounding, &b.unit, &b.spacing, &b.gyration}) {
     *x = rounded(*x, digits);
   }
   for (Vector3* v : {&b.half_extents, &b.position, &b.velocity, &b.turned, &b.spin, &b.swing}) {
@@ -65,6 +66,7 @@ class Shrinker {
   RandomScene smallest() {
     for (bool smaller = true; smaller && tries_ < most_tries;) {
       smaller = fewer_bodies();
+      smaller = fewer_joints() || smaller;
       smaller = shorter() || smaller;
       smaller = stiller() || smaller;
     }
@@ -95,8 +97,22 @@ class Shrinker {
     bool any = false;
     for (std::size_t i = scene_.bodies.size(); i-- > 0;) {
       RandomScene smaller = scene_;
+      std::erase_if(smaller.joints, [&](const RandomJoint& joint) {
+        return std::find(joint.bodies.begin(), joint.bodies.end(), smaller.bodies[i].name) !=
+               joint.bodies.end();
+      });
       smaller.bodies.erase(smaller.bodies.begin() + static_cast<std::ptrdiff_t>(i));
       any = (!smaller.bodies.empty() && keep(smaller)) || any;
+    }
+    return any;
+  }
+
+  bool fewer_joints() {
+    bool any = false;
+    for (std::size_t i = scene_.joints.size(); i-- > 0;) {
+      RandomScene smaller = scene_;
+      smaller.joints.erase(smaller.joints.begin() + static_cast<std::ptrdiff_t>(i));
+      any = keep(smaller) || any;
     }
     return any;
   }
@@ -173,6 +189,10 @@ std::string_view to_string(Fate fate) {
       return "held apart";
     case Fate::differs:
       return "other bits";
+    case Fate::joint:
+      return "joint open";
+    case Fate::friction:
+      return "friction drives";
   }
   return "";
 }

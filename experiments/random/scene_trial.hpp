@@ -25,11 +25,13 @@ enum class Fate {
   law,         ///< an impact of two that part, or a rebound that breaks restitution
   apart,       ///< told to be in contact, and not near each other in a drawn frame
   differs,     ///< other bits when neighbours are found another way
+  joint,       ///< the two sides of a joint are not where it lets them be
+  friction,    ///< friction, or hops that die down, gave energy
 };
-constexpr Fate last_of(Fate) { return Fate::differs; }
-inline constexpr std::array all_fates{Fate::right,   Fate::not_finite, Fate::overlap, Fate::ledger,
-                                      Fate::hang,    Fate::law,        Fate::apart,   Fate::differs,
-                                      Fate::invalid, Fate::stopped};
+constexpr Fate last_of(Fate) { return Fate::friction; }
+inline constexpr std::array all_fates{Fate::right, Fate::not_finite, Fate::overlap, Fate::ledger,
+                                      Fate::hang,  Fate::law,        Fate::apart,   Fate::differs,
+                                      Fate::joint, Fate::friction,   Fate::invalid, Fate::stopped};
 [[nodiscard]] std::string_view to_string(Fate fate);
 
 struct Trial {

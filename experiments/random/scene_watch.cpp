@@ -19,6 +19,9 @@ constexpr std::int64_t most_events = 66 * SceneWatch::most_in_frame;
 /// are below 1e-10 of it.
 constexpr double in_touch = 1e-6;
 
+/// Joints are held at the ends of steps; in between they open by what a step is interpolated to.
+constexpr double joint_opens = 1e-9;
+
 double radius_of(const Shape& shape) {
   const double radius = bounding_radius(shape);
   return std::isfinite(radius) ? radius : 0.0;
@@ -44,6 +47,8 @@ void SceneWatch::frame(const Frame& frame) {
   check_overlap(frame.bodies, frame.time);
   check_contacts(frame.bodies, frame.time);
   check_energy(frame);
+  check_dissipation(frame);
+  check_joints(frame.bodies, frame.time);
   if (frame.index > most_events) {
     throw BrokenPromise{Fate::hang, "frames without end", frame.time.seconds};
   }
@@ -74,6 +79,70 @@ void SceneWatch::check_energy(const Frame& frame) const {
         Fate::ledger,
         fmt::format("{} J unexplained, allowed {}", frame.ledger.unexplained(), allowed),
         frame.time.seconds};
+  }
+}
+
+void SceneWatch::check_dissipation(const Frame& frame) {
+  constexpr std::array lines{EnergyLine::friction, EnergyLine::impact_friction,
+                             EnergyLine::zeno_completion};
+  const double rounding = 8.0 * epsilon * frame.ledger.flow();
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    const double now = frame.ledger.line(lines[k]);
+    if (now > dissipated_[k] + rounding) {
+      throw BrokenPromise{
+          Fate::friction,
+          fmt::format("{} gave {:.3g} J in a frame", to_string(lines[k]), now - dissipated_[k]),
+          frame.time.seconds};
+    }
+    dissipated_[k] = now;
+  }
+}
+
+/// By what each kind of joint means, not by the rows that hold it.
+void SceneWatch::check_joints(std::span<const BodyState> bodies, Instant t) const {
+  for (const Joint& joint : model_->scene().joints) {
+    const auto pose = [&](const JointSide& side) {
+      return side.body ? bodies[*side.body].pose : Pose{};
+    };
+    const Pose a = pose(joint.a);
+    const Pose b = pose(joint.b);
+    const Vector3 arm_a = a.orientation * joint.a.point;
+    const Vector3 arm_b = b.orientation * joint.b.point;
+    const Vector3 apart = (b.position - a.position) + (arm_b - arm_a);
+    const Quaternion frame_a = a.orientation * joint.a.frame;
+    const Quaternion frame_b = b.orientation * joint.b.frame;
+    const Vector3 axis_a = frame_a * Vector3::UnitX();
+    double open = apart.norm();
+    double turned = 0.0;
+    switch (joint.kind) {
+      case JointKind::ball:
+        break;
+      case JointKind::rod:
+        open = std::abs(apart.norm() - joint.length);
+        break;
+      case JointKind::hinge:
+        turned = axis_a.cross(frame_b * Vector3::UnitX()).norm();
+        break;
+      case JointKind::slider:
+        open = axis_a.cross(apart).norm();
+        turned = 2.0 * (frame_a.conjugate() * frame_b).vec().norm();
+        break;
+      case JointKind::weld:
+        turned = 2.0 * (frame_a.conjugate() * frame_b).vec().norm();
+        break;
+    }
+    const auto radius = [&](const JointSide& side) {
+      return side.body ? radius_of(model_->shape(*side.body)) : 0.0;
+    };
+    const double size =
+        arm_a.norm() + arm_b.norm() + joint.length + radius(joint.a) + radius(joint.b);
+    const double scale = a.position.norm() + b.position.norm() + size;
+    if (open > joint_opens * size + 64.0 * epsilon * scale || turned > joint_opens) {
+      throw BrokenPromise{Fate::joint,
+                          fmt::format("a {} joint is {:.3g} m and {:.3g} rad open",
+                                      to_string(joint.kind), open, turned),
+                          t.seconds};
+    }
   }
 }
 

@@ -4,6 +4,7 @@
 #include "core/recorder.hpp"
 #include "experiments/random/scene_trial.hpp"
 
+#include <array>
 #include <set>
 #include <string>
 #include <utility>
@@ -32,6 +33,9 @@ class SceneWatch : public Recorder {
 
  private:
   void check_energy(const Frame& frame) const;
+  /// What friction and hops that die down took grows from frame to frame.
+  void check_dissipation(const Frame& frame);
+  void check_joints(std::span<const BodyState> bodies, Instant t) const;
   /// Impacts of one instant: each as its law says.
   void check_impacts();
   [[nodiscard]] double handed_on(const Event& event) const;
@@ -47,6 +51,7 @@ class SceneWatch : public Recorder {
   std::int64_t events_ = 0;
   std::vector<Event> at_once_;  ///< impacts of one instant, not yet checked
   std::set<std::pair<BodyIndex, BodyIndex>> in_contact_;
+  std::array<double, 3> dissipated_{};  ///< J, <= 0, up to the last frame
 };
 
 }  // namespace kairos::experiments

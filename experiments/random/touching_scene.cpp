@@ -1,5 +1,4 @@
-#include "core/random.hpp"
-#include "experiments/random/random_scene.hpp"
+#include "experiments/random/scene_builder.hpp"
 
 #include <fmt/format.h>
 
@@ -10,11 +9,10 @@ namespace kairos::experiments {
 namespace {
 
 /// Makes one scene in a frame of its own, up along y, and places it at random.
-class Builder {
+class Builder : SceneBuilder {
  public:
-  Builder(std::uint64_t seed, std::uint64_t index) : random_(~seed, index) {
-    scene_.name = fmt::format("touching-{}-{}", seed, index);
-  }
+  Builder(std::uint64_t seed, std::uint64_t index)
+      : SceneBuilder(~seed, index, fmt::format("touching-{}-{}", seed, index)) {}
 
   RandomScene make() {
     scene_.G = 9.8;
@@ -50,45 +48,6 @@ class Builder {
   }
 
  private:
-  bool chance(double p) { return random_.uniform() < p; }
-  /// Draws 0 and 1 often, as they are special.
-  double restitution() {
-    const double u = random_.uniform();
-    return u < 0.2 ? 0.0 : u < 0.4 ? 1.0 : u < 0.5 ? 0.5 : random_.uniform();
-  }
-  double size() { return chance(0.5) ? 0.125 : random_.log_uniform(0.02, 0.5); }
-  double mass() { return chance(0.5) ? 1.0 : random_.log_uniform(1e-3, 1e3); }
-
-  RandomBody& plane(const Vector3& normal, const Vector3& position = Vector3::Zero()) {
-    RandomBody b;
-    b.name = fmt::format("plane-{}", scene_.bodies.size());
-    b.entity = "wall";
-    b.shape = "half-space";
-    b.normal = normal.normalized();
-    b.position = position;
-    scene_.bodies.push_back(b);
-    return scene_.bodies.back();
-  }
-  RandomBody& ball(const Vector3& position, double radius) {
-    RandomBody b;
-    b.name = fmt::format("ball-{}", scene_.bodies.size());
-    b.entity = "ball";
-    b.shape = "sphere";
-    b.radius = radius;
-    b.mass = mass();
-    b.restitution = restitution();
-    b.position = position;
-    scene_.bodies.push_back(b);
-    return scene_.bodies.back();
-  }
-  RandomBody& box(const Vector3& position, const Vector3& half) {
-    RandomBody& b = ball(position, 0.0);
-    b.name = fmt::format("box-{}", scene_.bodies.size());
-    b.entity = "body";
-    b.shape = "box";
-    b.half_extents = half;
-    return b;
-  }
   Vector3 half() {
     const double h = size();
     return chance(0.5) ? Vector3(h, h, h) : Vector3(size(), h, size());
@@ -279,15 +238,22 @@ class Builder {
       }
     }
   }
-
-  Random random_;
-  RandomScene scene_;
 };
 
 }  // namespace
 
 RandomScene touching_scene(std::uint64_t seed, std::uint64_t index) {
   return Builder(seed, index).make();
+}
+
+RandomScene rough_scene(std::uint64_t seed, std::uint64_t index) {
+  RandomScene scene = Builder(seed, index).make();
+  scene.name = fmt::format("rough-{}-{}", seed, index);
+  Random random(~seed - 2, index);
+  for (RandomBody& b : scene.bodies) {
+    b.friction = random_friction(random);
+  }
+  return scene;
 }
 
 }  // namespace kairos::experiments
