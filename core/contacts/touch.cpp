@@ -248,6 +248,29 @@ std::optional<TouchFeature> under_ball(const Shape& shape, const Vector3& on,
   return best;
 }
 
+/// The edges that cross at a point of the surfaces, none of whose corners is there; nothing where
+/// they are nearly parallel: where they cross then runs away.
+std::optional<Touch> crossing(const Shape& shape_a, const Pose& a, const Vector3& on_a,
+                              const Shape& shape_b, const Pose& b, const Vector3& on_b,
+                              const Vector3& n) {
+  constexpr double nearly_parallel = 1e-3;
+  const auto edge_a = line_feature(shape_a, on_a, a.orientation.conjugate() * n);
+  const auto edge_b = line_feature(shape_b, on_b, b.orientation.conjugate() * n);
+  if (!edge_a || !edge_b) {
+    return std::nullopt;
+  }
+  const Vector3 across =
+      (a.orientation * edge_a->direction).cross(b.orientation * edge_b->direction);
+  if (across.norm() < nearly_parallel) {
+    return std::nullopt;
+  }
+  Touch touch;
+  touch.on_a = *edge_a;
+  touch.on_b = *edge_b;
+  touch.normal = n;
+  return touch;
+}
+
 /// Whether a feature is that of a ball, which is round.
 bool is_round(const std::optional<TouchFeature>& feature) {
   return feature && feature->radius > 0.0;
@@ -348,6 +371,11 @@ std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point
     }
   }
   if (manifold.face_of_a || manifold.face_of_b) {
+    if (!corner_a && !corner_b) {
+      if (const auto edges = crossing(shape_a, a, on_a, shape_b, b, on_b, n)) {
+        return edges;
+      }
+    }
     const std::optional<TouchFeature> face_a =
         manifold.face_of_a ? std::optional(face_feature(shape_a, on_a, n_A)) : std::nullopt;
     const std::optional<TouchFeature> face_b =
@@ -360,7 +388,7 @@ std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point
                               : infinity;
     // Of two corners at one place the one that is on the face of the other: it may slide on.
     const bool has_a = corner_a && !(corner_b && past_a < past_b);
-    // Where edges cross on a face the point moves with a, until the next look.
+    // Where edges that are nearly parallel cross, the point moves with a until the next look.
     if (face_b && (has_a || !(face_a && corner_b))) {
       touch.on_a = corner_a.value_or(TouchFeature{Kind::ball, on_a, Vector3::Zero(), 0.0});
       touch.on_b = *face_b;
