@@ -27,6 +27,9 @@ constexpr double most_radians = 1e4;
 /// tolerance, and then again after so many more: a graze comes nearer ever more slowly.
 constexpr int looks_before_try = 5;
 constexpr int looks_between_tries = 8;
+/// After so many looks in a row within the tolerance steps are also taken along other axes than
+/// that of the greatest gap: a contact has been sought and not been found.
+constexpr int looks_before_axes = looks_before_try;
 /// For bodies that spin by more than a radian still: looks between two tries with the hulls of all
 /// that they sweep. If these hulls are apart nothing else has to be looked at.
 constexpr int looks_between_hulls = 64;
@@ -63,8 +66,8 @@ int work_allowed(const Effort& effort, double spin, double remaining) {
 
 /// The end of a step that is proven free of contact, window time: exactly where the bounds end, if
 /// it gets there, so that no sliver is left for the next one.
-double next_after(const PairLooks& pair, const BoundsAhead& bounds, const Look& at,
-                  bool try_hulls) {
+double next_after(const PairLooks& pair, const BoundsAhead& bounds, const Look& at, bool try_hulls,
+                  bool try_axes) {
   const double remaining = pair.duration() - at.t();
   const double horizon = std::min(remaining, bounds.until() - at.t());
   const double spin = bounds.spin();
@@ -74,6 +77,9 @@ double next_after(const PairLooks& pair, const BoundsAhead& bounds, const Look& 
   }
   if (step * spin < 1.0) {
     step = std::max(step, pair.safe_step(at.k, at.witness, bounds.turn(), horizon));
+  }
+  if (try_axes && step < horizon) {
+    step = std::max(step, pair.step_along_axes(at, bounds.turn(), horizon));
   }
   if (reaches_end(step, remaining)) {
     return pair.duration();
@@ -119,7 +125,7 @@ Ending advance_from(PairLooks& pair, BoundsAhead& bounds, const Effort& effort, 
     }
     bounds.renew(at.t(), last_step);
     const bool try_hulls = (pair.count() - first) % looks_between_hulls == 0;
-    const double next = next_after(pair, bounds, at, try_hulls);
+    const double next = next_after(pair, bounds, at, try_hulls, near > looks_before_axes);
     if (next >= std::min(duration, repeats)) {
       return {ToiStatus::separated, at, duration};
     }

@@ -3,6 +3,7 @@
 #include "ccd/core_witness.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace kairos::ccd {
 namespace {
@@ -79,6 +80,24 @@ Witness along_direction(const PairMotion& motion, const Kinematics& k, const Vec
   witness.n = n;
   witness.gap = core_pair(motion, k).separation(n) - motion.reach();
   fix(motion, k, witness);
+  return witness;
+}
+
+Witness along_two_edges(const PairMotion& motion, const Kinematics& k, const Vector3& edge_a,
+                        const Vector3& edge_b, const Vector3& n) {
+  Witness witness;
+  witness.gap = -std::numeric_limits<double>::infinity();
+  const Vector3 cross = edge_a.cross(edge_b);
+  const double sine = cross.norm();
+  if (sine > least_sine) {
+    const double sign = cross.dot(n) < 0.0 ? -1.0 : 1.0;
+    witness.n = cross * (sign / sine);
+    witness.gap = core_pair(motion, k).separation(witness.n) - motion.reach();
+    witness.sine = sine;
+    witness.along_a = edge_a;
+    witness.along_b = sign * edge_b;
+    witness.frame = WitnessFrame::edges;
+  }
   return witness;
 }
 

@@ -26,6 +26,24 @@ namespace kairos::ccd {
 [[nodiscard]] double core_hull_support(const ConvexCore& core, const Matrix3& R, bool spins,
                                        const Vector3& w, const Vector3& n);
 
+/// The witness along the cross product of two edges, world frame, on the side of n: fixed to both,
+/// even where that is hardly off a face's normal. Its gap is -infinity where they are parallel.
+[[nodiscard]] Witness along_two_edges(const PairMotion& motion, const Kinematics& k,
+                                      const Vector3& edge_a, const Vector3& edge_b,
+                                      const Vector3& n);
+
+/// Calls visit(edge of a, edge of b), world frame, for those around where two cores touch.
+template <typename Visit>
+void for_each_two_edges(const PairMotion& motion, const Kinematics& k, const Vector3& n,
+                        const Visit& visit) {
+  const auto none = [](const Vector3&) {};
+  motion.core_a().nearby(k.R_WA.transpose() * n, none, [&](const Vector3& a) {
+    motion.core_b().nearby(-(k.R_WB.transpose() * n), none, [&](const Vector3& b) {
+      visit(Vector3(k.R_WA * a), Vector3(k.R_WB * b));
+    });
+  });
+}
+
 /// Calls visit(direction), world frame, for normals of the faces around where two cores touch and
 /// for what is across their edges: all along which they may leave each other.
 template <typename Visit>
@@ -39,15 +57,13 @@ void for_each_axis(const PairMotion& motion, const Kinematics& k, const Witness&
       m_a, [&](const Vector3& x) { visit(Vector3(k.R_WA * x)); }, none);
   motion.core_b().nearby(
       m_b, [&](const Vector3& x) { visit(Vector3(-(k.R_WB * x))); }, none);
-  motion.core_a().nearby(m_a, none, [&](const Vector3& a) {
-    motion.core_b().nearby(m_b, none, [&](const Vector3& b) {
-      const Vector3 across = (k.R_WA * a).cross(k.R_WB * b);
-      const double length = across.norm();
-      if (length > 0.0) {
-        visit(Vector3(across / length));
-        visit(Vector3(across / -length));
-      }
-    });
+  for_each_two_edges(motion, k, n, [&](const Vector3& a, const Vector3& b) {
+    const Vector3 across = a.cross(b);
+    const double length = across.norm();
+    if (length > 0.0) {
+      visit(Vector3(across / length));
+      visit(Vector3(across / -length));
+    }
   });
   // Round rims have normals between these: on the side to which the points of contact part.
   const Vector3 parting = k.v + k.w_b.cross(at.on_b - k.d) - k.w_a.cross(at.on_a);

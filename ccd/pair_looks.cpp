@@ -1,5 +1,7 @@
 #include "ccd/pair_looks.hpp"
 
+#include "ccd/box_witness.hpp"
+#include "ccd/moving_cores.hpp"
 #include "ccd/separation_function.hpp"
 
 #include <algorithm>
@@ -50,6 +52,29 @@ double PairLooks::safe_step(const Kinematics& k, const Witness& witness, const T
     Witness still = witness;
     still.frame = WitnessFrame::world;
     try_along(still);
+  }
+  return step;
+}
+
+double PairLooks::step_along_axes(const Look& at, const TurnBounds& bounds, double horizon) const {
+  double step = 0.0;
+  const auto try_along = [&](Witness witness) {
+    step = std::max(step, step_along(at.k, witness, bounds, horizon));
+    if (witness.frame != WitnessFrame::world) {  // what turns may be at a face that does not
+      witness.frame = WitnessFrame::world;
+      step = std::max(step, step_along(at.k, witness, bounds, horizon));
+    }
+  };
+  for (int axis = 0; kind_ == PairKind::box_box && axis < axis_count; ++axis) {
+    try_along(along_axis(motion_, at.k, axis));
+  }
+  if (kind_ == PairKind::cores) {
+    for_each_axis(motion_, at.k, at.witness,
+                  [&](const Vector3& n) { try_along(along_direction(motion_, at.k, n)); });
+    for_each_two_edges(motion_, at.k, at.witness.n, [&](const Vector3& a, const Vector3& b) {
+      const Witness witness = along_two_edges(motion_, at.k, a, b, at.witness.n);
+      step = std::max(step, step_along(at.k, witness, bounds, horizon));
+    });
   }
   return step;
 }

@@ -45,6 +45,10 @@ class PairLooks {
   /// and not approach limits that, also along directions that stay.
   [[nodiscard]] double safe_step(const Kinematics& k, const Witness& witness,
                                  const TurnBounds& bounds, double horizon) const;
+  /// How far along any of the axes along which they may be in touch, s: where a body turns about an
+  /// edge that stays on a face, the witness of each look closes, and the face's normal does not.
+  [[nodiscard]] double step_along_axes(const Look& at, const TurnBounds& bounds,
+                                       double horizon) const;
   /// The same beside the hulls of all that spinning bodies pass (eq. 8).
   [[nodiscard]] double step_beside_hulls(const Look& at, const TurnBounds& bounds,
                                          double horizon) const;

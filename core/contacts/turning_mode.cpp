@@ -1,6 +1,7 @@
 #include "core/contacts/turning_mode.hpp"
 
 #include "core/circular.hpp"
+#include "core/contacts/complementarity.hpp"
 #include "core/contacts/routh_impact.hpp"
 
 #include <Eigen/Geometry>
@@ -293,6 +294,30 @@ std::vector<Twist> held_velocities(const TurningState& state, const std::vector<
   }
   held.project(velocities);
   return velocities;
+}
+
+std::optional<Parting> parting(const TurningState& state) {
+  ContactSystem all;
+  all.bodies = state.bodies;
+  for (const Touch& touch : state.touches) {
+    const TouchNow now = look_at(touch, state.states[touch.a], state.states[touch.b]);
+    all.rows.push_back({touch.a, touch.b, now.normal, now.point_a - state.bodies[touch.a].position,
+                        now.point_b - state.bodies[touch.b].position});
+  }
+  Parting found;
+  for (const BodyState& s : state.states) {
+    found.velocities.push_back(s.twist);
+  }
+  const Complementarity impulses =
+      solve_complementarity(all.coupling(), all.rates(found.velocities));
+  if (!impulses.solved) {
+    return std::nullopt;
+  }
+  all.push(impulses.x, found.velocities);
+  for (const double impulse : impulses.x) {
+    found.struck.push_back(impulse > 0.0 ? 1 : 0);
+  }
+  return found;
 }
 
 void put_at_gaps(TurningState& state, const std::vector<char>& moves) {

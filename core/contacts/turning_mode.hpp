@@ -2,6 +2,7 @@
 
 #include "core/contacts/turning_forces.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,15 @@ inline constexpr double turning_roundoff = 1e-11;
 [[nodiscard]] std::vector<Twist> held_velocities(const TurningState& state,
                                                  const std::vector<TouchNow>& now,
                                                  const std::vector<FrictionChoice>& choices);
+
+/// An impact without rebound.
+struct Parting {
+  std::vector<Twist> velocities;  ///< by body
+  std::vector<char> struck;       ///< by touch: it took an impulse
+};
+/// Velocities with which nothing approaches along the normals of the touches, nearest, as the
+/// kinetic energy measures; nothing where none are known.
+[[nodiscard]] std::optional<Parting> parting(const TurningState& state);
 
 /// Moves the bodies, nearest as their masses measure, so that the gaps of the touches for which
 /// `moves` holds are what they are to be; first order in what they are off by.

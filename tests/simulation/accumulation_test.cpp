@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -313,4 +314,30 @@ TEST_CASE("a ball that slides off a block: where the origin is changes roundoff 
   CHECK(std::abs(leaves(0.0, 0.0, 0.0) - 1.0) <= 1e-15);
   CHECK(std::abs(leaves(64.0, -32.0, 16.0) - 1.0) <= 1e-13);  // eps of the coordinates, at 2 m/s
   CHECK(std::abs(leaves(3.7, -100.3, 17.1) - 1.0) <= 1e-13);
+}
+
+// On a slanted line they are off it by roundoff, and slide along each other when they have met:
+// nothing presses them, so that they go on by themselves, and no faster than as one.
+TEST_CASE("balls that collapse in free flight go on side by side", "[accumulation]") {
+  const double c = std::cos(0.7049);
+  const double s = std::sin(0.7049);
+  std::string text = "duration = 5.0\nframe = 0.125\nG = 0\n";
+  const std::array speeds{3.0056, 1.3357, 0.28837, -1.41246, -3.00553};
+  double momentum = 0.0;
+  for (std::size_t k = 0; k < speeds.size(); ++k) {
+    const double x = 8.626137551934007 * static_cast<double>(k);
+    text += ball(fmt::format("ball-{}", k), 0.8626137551934007, 0.25452043560445264,
+                 fmt::format("[{}, 0.3, {}]", x * c, x * s),
+                 fmt::format("[{}, 0, {}]", speeds[k] * c, speeds[k] * s));
+    momentum += speeds[k];
+  }
+  const auto sim = run(text);
+  INFO(sim.result.reason);
+  REQUIRE(sim.result.status == RunStatus::completed);
+  tests::check_explained(sim.result.ledger);
+  CHECK(sim.result.ledger.line(EnergyLine::zeno_completion) < 0.0);
+  for (const BodyState& ball : sim.result.state) {
+    const double along = c * ball.twist.linear.x() + s * ball.twist.linear.z();
+    CHECK(std::abs(along - momentum / 5.0) <= 1e-9);
+  }
 }

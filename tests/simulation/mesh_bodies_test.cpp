@@ -263,6 +263,34 @@ TEST_CASE("a height field that is flat is a floor", "[meshes]") {
   }
 }
 
+// The plateau ends at x = -0.5: the box lands across its rim, tips, and touches along two edges
+// that are hardly off its face. Each look saw the face's plane close; a run took a million of them.
+TEST_CASE("a box that tips over the rim of a height field is followed in few looks", "[meshes]") {
+  const tests::TemporaryFolder folder;
+  const auto sim = run(folder, R"(duration = 0.5
+frame = 0.02
+[[body]]
+name = "field"
+entity = "wall"
+friction = 0.1
+shape = "height-field"
+spacing = [0.5, 0.5]
+heights = [[-0.06, -0.03, 0.14, -0.09], [0, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0], [0.09, 0.25, 0.04, 0.07], [-0.02, -0.02, -0.09, 0.17]]
+[[body]]
+name = "box"
+entity = "body"
+mass = 1
+restitution = 0
+friction = 0.1
+position = [-0.534411, 0.703296, -0.294526]
+velocity = [-0.76474, -0.680161, 0.114446]
+half_extents = [0.1, 0.1, 0.1]
+)");
+  INFO(sim.result.reason);
+  CHECK(sim.result.end.seconds > 0.288);             // it has landed
+  CHECK(sim.result.cost.toi_evaluations <= 50'000);  // of which it takes 10,533
+}
+
 TEST_CASE("parts and heights that are none are refused", "[meshes]") {
   const tests::TemporaryFolder folder;
   const auto read = [&](const std::string& keys) {

@@ -366,6 +366,52 @@ TEST_CASE("turning: a grid of balls falls apart, and none comes into another", "
   }
 }
 
+// One rolls off below and is struck, at 1e-5 m/s; above it others lie still, at 1e-9 m/s, and are
+// off by what a step of all together is.
+TEST_CASE("turning: what is handed on is told of none that part", "[turning]") {
+  std::string text = fmt::format(
+      "duration = 0.256840305060453\nframe = 0.05817716488529574\nG = {}\n[[body]]\n"
+      "name = \"floor\"\nentity = \"wall\"\nshape = \"half-space\"\n",
+      g);
+  for (const auto& [k, x, y] : {std::tuple{1, 0.25, 0.625},
+                                {2, 0.0, 0.625},
+                                {3, 0.5, 0.375},
+                                {4, 0.25, 0.375},
+                                {5, 0.0, 0.375},
+                                {6, 0.5, 0.125},
+                                {7, 0.25, 0.125}}) {
+    text += ball(k, 0.125, {x, y, 0.0}, 0.0);
+  }
+  const auto sim = run(text);
+  check_whole(sim, text);
+  REQUIRE(!impacts(sim).empty());
+  for (const Event& event : impacts(sim)) {
+    const double speeds = event.before_a.twist.linear.norm() + event.before_b.twist.linear.norm();
+    CHECK(normal_velocity(event.contact, event.before_a, event.before_b) <= 1e-14 * speeds);
+  }
+}
+
+// Faces that slide along each other at 1 m/s hand on 1e-14 m/s of what strikes below: roundoff.
+TEST_CASE("turning: what is handed on below roundoff is no impact", "[turning]") {
+  std::string text = fmt::format(
+      "duration = 0.163\nframe = 0.0157\nG = {}\n[[body]]\nname = \"plane-0\"\n"
+      "entity = \"wall\"\nshape = \"half-space\"\n",
+      g);
+  for (const auto& [k, x, y] :
+       {std::tuple{2, 0.25, 0.438}, {3, 0.0, 0.438}, {4, 0.5, 0.188}, {5, 0.25, 0.188}}) {
+    text += fmt::format(
+        "[[body]]\nname = \"box-{}\"\nentity = \"body\"\nhalf_extents = [0.125, 0.125, 0.125]\n"
+        "mass = 1.0\nrestitution = 0.5\nposition = [{}, {}, 0.0]\n",
+        k, x, y);
+  }
+  const auto sim = run(text);
+  REQUIRE(!impacts(sim).empty());
+  for (const Event& event : impacts(sim)) {
+    const double speeds = event.before_a.twist.linear.norm() + event.before_b.twist.linear.norm();
+    CHECK(normal_velocity(event.contact, event.before_a, event.before_b) <= 1e-15 * speeds);
+  }
+}
+
 // In a groove: the box under a ball that hops on it takes a ten-thousandth of its speed, and what
 // that leaves along the planes is far below roundoff of the ball's.
 TEST_CASE("turning: what a blow hands on keeps its restitution, however slow it is", "[turning]") {

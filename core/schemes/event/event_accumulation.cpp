@@ -147,6 +147,7 @@ EventAccumulation::Finding EventAccumulation::after_impact(BodyIndex a, BodyInde
         if (history.creeps()) {
           finding.kind = Finding::Kind::creeps;
         }
+        finding.goes_on = !history.creeps_on();
         return finding;
       }
     }
@@ -158,7 +159,8 @@ EventAccumulation::Finding EventAccumulation::after_impact(BodyIndex a, BodyInde
               .reason = fmt::format("accumulation: impacts of {} follow each other without end, on "
                                     "ways below {:.2g} m",
                                     run_.names(a, b), tolerance),
-              .bodies = std::move(bodies)};
+              .bodies = std::move(bodies),
+              .goes_on = !history.creeps_on()};
     }
   }
   return {};

@@ -155,7 +155,9 @@ void EventContacts::touch(BodyIndex a, BodyIndex b, const Contact& contact, Inst
   if (modes_.holds(a) || modes_.holds(b)) {
     const std::vector<BodyIndex> bodies = modes_.group(pair);
     modes_.bring_group(bodies, t);
-    return settle(bodies, t, {.unloaded = true}) ? void() : set_free(bodies, t);
+    // Asked again and again, it is at a rim: what goes over that turns.
+    const bool again = accumulation_.stalls(a, b, t, least_progress * run_.epoch());
+    return settle(bodies, t, {.unloaded = true, .may_turn = again}) ? void() : set_free(bodies, t);
   }
   if (settle(pair, t, {.pressed = BodyPair{a, b}}) || meet_elsewhere(a, b, t)) {
     return;

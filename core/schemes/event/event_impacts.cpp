@@ -146,12 +146,16 @@ void EventContacts::meet(Event& event, Instant t) {
                {.unloaded = unite,
                 .unite = unite,
                 .remaining = finding.remaining,
-                .pairs = finding.pairs,
+                .pairs = finding.kind == Kind::creeps ? 0 : finding.pairs,
                 .may_turn = finding.kind != Kind::collapse})) {
       return;
     }
-    if (finding.kind == Kind::collapse) {
-      return relaunch(a, b, t);  // the impacts go on for now
+    if (finding.goes_on) {
+      return relaunch(a, b, t);
+    }
+    // What turns may be slow in its middle and come together at its corners.
+    if (finding.kind == Kind::rests && meet_elsewhere(a, b, t)) {
+      return;
     }
   }
   depart(a, b, t);  // the last frame shows the states after the impact, as booked
@@ -477,9 +481,9 @@ bool EventContacts::strike_group(const BodyPair& pair, double approach, Instant 
 void EventContacts::tell_group(const EventModes::GroupImpact& impact,
                                const Eigen::VectorXd& impulses, std::span<const BodyState> before,
                                const BodyPair& first, Instant t) {
-  const auto state = [&](BodyIndex i) -> const BodyState& {
-    const auto place = std::find(impact.bodies.begin(), impact.bodies.end(), i);
-    return before[static_cast<std::size_t>(place - impact.bodies.begin())];
+  const auto place = [&](BodyIndex i) {
+    const auto found = std::find(impact.bodies.begin(), impact.bodies.end(), i);
+    return static_cast<std::size_t>(found - impact.bodies.begin());
   };
   const auto is_first = [&](const BodyPair& p) {
     return p == first || p == BodyPair{first.second, first.first};
@@ -516,17 +520,31 @@ void EventContacts::tell_group(const EventModes::GroupImpact& impact,
       return;
     }
     const Centre& centre = of_approaching.total > 0.0 ? of_approaching : of_all;
-    const bool only_handed_on =
-        (state(a).twist.linear - motions_.now(a).twist.linear).norm() <= resolved &&
-        (state(b).twist.linear - motions_.now(b).twist.linear).norm() <= resolved;
-    if (only_handed_on && !is_first(impact.pairs[p])) {
+    // What the two gave each other may be roundoff of what others gave them.
+    const auto gained = [&](BodyIndex i) {
+      return of_all.total * impact.system.bodies[place(i)].inverse_mass;
+    };
+    const bool only_handed_on = gained(a) <= resolved && gained(b) <= resolved;
+    // What began it is told where it approached, once nothing is off any more.
+    const bool began = is_first(impact.pairs[p]) && of_approaching.total > 0.0;
+    if (only_handed_on && !began) {
       return;
     }
     event.contact.point = centre.sum / centre.total;
     event.contact.restitution = run_.model.restitution(a, b);
     event.contact.friction = run_.model.friction(a, b);
-    event.before_a = state(a);
-    event.before_b = state(b);
+    event.before_a = before[place(a)];
+    event.before_b = before[place(b)];
+    // What holds, and parts by what its step is off, was pressed through: it did not strike.
+    const double speeds = event.before_a.twist.linear.norm() + event.before_b.twist.linear.norm() +
+                          event.before_a.twist.angular.norm() *
+                              (event.contact.point - event.before_a.pose.position).norm() +
+                          event.before_b.twist.angular.norm() *
+                              (event.contact.point - event.before_b.pose.position).norm();
+    if (of_approaching.total == 0.0 &&
+        normal_velocity(event.contact, event.before_a, event.before_b) > 64.0 * epsilon * speeds) {
+      return;
+    }
     event.after_a = motions_.now(a);
     event.after_b = motions_.now(b);
     ++run_.cost.impacts;
@@ -575,12 +593,12 @@ void EventContacts::go_on_from(std::span<const BodyIndex> bodies, const BodyPair
              {.unloaded = unite,
               .unite = unite,
               .remaining = finding.remaining,
-              .pairs = finding.pairs,
+              .pairs = finding.kind == Kind::creeps ? 0 : finding.pairs,
               .may_turn = finding.kind != Kind::none && finding.kind != Kind::collapse})) {
     return;
   }
   set_free(bodies, t);
-  if (finding.kind != Kind::none && finding.kind != Kind::collapse) {
+  if (finding.kind != Kind::none && !finding.goes_on) {
     run_.stop(t, finding.kind == Kind::squeezed ? finding.reason
                                                 : fmt::format("{}; {}", finding.reason, unkept()));
   }

@@ -153,6 +153,8 @@ class EventModes {
   void lift(Gathered& found, Turning& turning);
   void raise(Gathered& found, Turning& turning);
   [[nodiscard]] bool has_room(std::span<const BodyState> before, const Gathered& found, Instant t);
+  [[nodiscard]] bool part_ways(const Gathered& found, Turning& turning, Instant t,
+                               const Adopt& adopt);
   [[nodiscard]] std::vector<double> hops(const Gathered& found);
   [[nodiscard]] bool fly(const Gathered& found, const Turning& turning, Instant t,
                          const Adopt& adopt);

@@ -34,6 +34,9 @@ class ImpactHistory {
   /// True where more than 200 in a row followed each other on no way at all. A cradle or the break
   /// of a rack has a few.
   [[nodiscard]] bool creeps() const { return creeping_ > most_creeping; }
+  /// True where so many did that nothing is to be hoped for from more of them. What hands an impact
+  /// on among many bodies, or among light and heavy ones, takes some hundreds until it is slow.
+  [[nodiscard]] bool creeps_on() const { return creeping_ > 25 * most_creeping; }
   /// Whether the latest impact followed the one before on no way at all.
   [[nodiscard]] bool on_no_way() const { return creeping_ > 0; }
   /// True where one and the same body was met more than three times in a row without a hop worth

@@ -84,14 +84,16 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
   if (!why_not_.empty()) {
     return false;
   }
-  if (turning.mode.flies) {
-    why_not_ = "nothing presses";
-    return turned(seeds) && !asked.pressed && !asked.unloaded && fly(found, turning, t, adopt);
-  }
   const auto& forces = turning.mode.forces.force;
-  if (std::all_of(forces.begin(), forces.end(), [](const Vector3& f) { return f.isZero(0.0); })) {
+  const bool pressed =
+      std::any_of(forces.begin(), forces.end(), [](const Vector3& f) { return !f.isZero(0.0); });
+  if (turning.mode.flies || !pressed) {
     why_not_ = "nothing presses";
-    return false;
+    if (asked.may_turn && !asked.pressed) {
+      return part_ways(found, turning, t, adopt);
+    }
+    return turning.mode.flies && turned(seeds) && !asked.pressed && !asked.unloaded &&
+           fly(found, turning, t, adopt);
   }
   if (asked.pressed && !presses(found, turning, *asked.pressed)) {
     why_not_ = "nothing presses";
@@ -367,6 +369,28 @@ bool EventModes::has_room(std::span<const BodyState> before, const Gathered& fou
     }
   }
   return true;
+}
+
+/// Nothing presses those that come to rest on each other: they go on by themselves, and none
+/// approaches another any more. What took an impulse has been in contact, and is told.
+bool EventModes::part_ways(const Gathered& found, Turning& turning, Instant t, const Adopt& adopt) {
+  auto apart = parting(turning.group.start);
+  if (!apart) {
+    return false;
+  }
+  turning.mode.velocities = std::move(apart->velocities);
+  std::vector<Change> changes;
+  for (std::size_t k = 0; k < apart->struck.size(); ++k) {
+    const auto& [a, b] = found.pairs[turning.group.start.touches[k].pair];
+    const bool told = !changes.empty() && changes.back().a == a && changes.back().b == b;
+    if (apart->struck[k] != 0 && !told && !graph_.joins(a, b)) {
+      changes.push_back({EventKind::contact_begins, a, b, Grade::sampled});
+      changes.push_back({EventKind::contact_ends, a, b, Grade::sampled});
+    }
+  }
+  const bool flies = fly(found, turning, t, adopt);
+  tell(changes, t);
+  return flies;
 }
 
 /// How fast those that were not held yet still hop, m/s, by pair: what takes that from them
