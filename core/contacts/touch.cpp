@@ -315,6 +315,27 @@ std::optional<std::vector<TouchFeature>> corners_of(const Shape& shape) {
   return corners;
 }
 
+std::vector<TouchFeature> faces_of(const Shape& shape) {
+  std::vector<TouchFeature> faces;
+  if (const auto* box = std::get_if<Box>(&shape)) {
+    for (int k = 0; k < 3; ++k) {
+      for (const double side : {-1.0, 1.0}) {
+        const Vector3 out = side * Vector3::Unit(k);
+        faces.push_back({Kind::plane, out * box->half_extents[k], out, 0.0});
+      }
+    }
+  } else if (const auto* hull = std::get_if<Hull>(&shape);
+             hull != nullptr && !(hull->rounding > 0.0)) {
+    const Polytope& p = *hull->core;
+    for (std::size_t f = 0; f < p.faces.size(); ++f) {
+      faces.push_back({Kind::plane, p.vertices[p.faces[f][0]], p.normals[f], 0.0});
+    }
+  } else if (const auto* half_space = std::get_if<HalfSpace>(&shape)) {
+    faces.push_back({Kind::plane, Vector3::Zero(), half_space->normal_B, 0.0});
+  }
+  return faces;
+}
+
 TouchFeature face_feature(const Shape& shape, const Vector3& x, const Vector3& outward) {
   TouchFeature face{Kind::plane, x, outward, 0.0};
   if (std::holds_alternative<Box>(shape)) {

@@ -59,6 +59,9 @@ struct TouchNow {
 /// that has no corners.
 [[nodiscard]] std::optional<std::vector<TouchFeature>> corners_of(const Shape& shape);
 
+/// The faces of a box, a hull without rounding or a half-space, each a plane; empty for others.
+[[nodiscard]] std::vector<TouchFeature> faces_of(const Shape& shape);
+
 /// The face of a shape that looks `outward`, unit, near a point of the surface (body frame): its
 /// own normal, on the plane that supports the shape, whatever the roundoff of both.
 [[nodiscard]] TouchFeature face_feature(const Shape& shape, const Vector3& x,
