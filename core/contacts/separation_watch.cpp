@@ -89,8 +89,11 @@ class Watcher {
     for (const TouchFeature& plane : watch.pair.planes_a) {
       add_plane(plane, true);
     }
+    // Where edges cross on a face, the face is what separates: corners lie in the plane of both.
+    const bool faces = !watch.pair.planes_a.empty() || !watch.pair.planes_b.empty();
     for (const Touch& touch : watch.held) {
-      if (touch.on_a.kind != Kind::plane && touch.on_b.kind != Kind::plane) {
+      const bool lines = touch.on_a.kind == Kind::line && touch.on_b.kind == Kind::line;
+      if (touch.on_a.kind != Kind::plane && touch.on_b.kind != Kind::plane && !(faces && lines)) {
         add_touch(touch);
       }
     }

@@ -178,9 +178,16 @@ std::optional<Corners> polytope_corners(const Shape& shape) {
   return std::nullopt;
 }
 
+/// A corner is beyond the rim of a face if it is by more than this part of the size.
+constexpr double gone_over = 1e-13;
 /// A vertex is at a point of a manifold if it is nearer than this part of the size.
 constexpr double near_vertex = 1e-7;
 constexpr double infinity = std::numeric_limits<double>::infinity();
+
+double radius_of(const Shape& shape) {
+  const double radius = bounding_radius(shape);
+  return std::isfinite(radius) ? radius : 0.0;
+}
 
 /// The corner or cap at a point of the surface (body frame), the normal pointing out of the body.
 std::optional<TouchFeature> ball_feature(const Shape& shape, const Vector3& x,
@@ -392,11 +399,6 @@ std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point
     }
   }
   if (manifold.face_of_a || manifold.face_of_b) {
-    if (!corner_a && !corner_b) {
-      if (const auto edges = crossing(shape_a, a, on_a, shape_b, b, on_b, n)) {
-        return edges;
-      }
-    }
     const std::optional<TouchFeature> face_a =
         manifold.face_of_a ? std::optional(face_feature(shape_a, on_a, n_A)) : std::nullopt;
     const std::optional<TouchFeature> face_b =
@@ -407,6 +409,13 @@ std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point
     const double past_b = corner_a && face_b
                               ? beyond_region(*face_b, shape_b, b.to_body(a.to_world(corner_a->at)))
                               : infinity;
+    // A corner that has gone over the rim of the face is on it no more: its edge is, at the rim.
+    const double size = radius_of(shape_a) + radius_of(shape_b);
+    if (std::min(past_a, past_b) > gone_over * size) {
+      if (const auto edges = crossing(shape_a, a, on_a, shape_b, b, on_b, n)) {
+        return edges;
+      }
+    }
     // Of two corners at one place the one that is on the face of the other: it may slide on.
     const bool has_a = corner_a && !(corner_b && past_a < past_b);
     // Where edges that are nearly parallel cross, the point moves with a until the next look.

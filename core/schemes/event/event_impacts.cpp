@@ -108,19 +108,30 @@ bool EventContacts::separates(const TouchFeature& face, const BodyState& own,
 
 /// Two that touch may slide past each other: the plane of a face of one of them separates both, and
 /// nothing comes nearer to it. Which edges meet is then chance: what slides from one tile onto the
-/// next, at the same level, does not strike its side. How long they are to be left alone, s, until
-/// they are past those edges: short, and the plane separates them still at its end; 0: they strike.
+/// next, at the same level, does not strike its side. Of what never moves only. How long they are
+/// to be left alone, s, until they are past those edges: short, and the plane separates them still
+/// at its end; 0: they strike.
 double EventContacts::passes_by(BodyIndex a, BodyIndex b, Instant t) const {
+  if (run_.model.mobility(a) != Mobility::fixed && run_.model.mobility(b) != Mobility::fixed) {
+    return 0.0;  // both may be moved in the meantime
+  }
+  const BodyIndex mover = run_.model.mobility(a) == Mobility::fixed ? b : a;
+  if (!modes_.holds(mover) && !motions_.support(mover)) {
+    return 0.0;  // it comes along nothing that would hold it at one level
+  }
   const Shape& shape_a = run_.model.shape(a);
   const Shape& shape_b = run_.model.shape(b);
   const auto corners_a = corners_of(shape_a);
   const auto corners_b = corners_of(shape_b);
-  if (!corners_a || !corners_b) {
+  // A half-space has no corners, and no edge that could be met by chance.
+  if (!corners_a || !corners_b || corners_a->empty() || corners_b->empty()) {
     return 0.0;
   }
   const BodyState& at_a = motions_.now(a);
   const BodyState& at_b = motions_.now(b);
-  const double speed = (at_b.twist.linear - at_a.twist.linear).norm();
+  const double speed = (at_b.twist.linear - at_a.twist.linear).norm() +
+                       at_a.twist.angular.norm() * bounding_radius(shape_a) +
+                       at_b.twist.angular.norm() * bounding_radius(shape_b);
   double duration =
       past_edges * std::min(smallest_extent(shape_a), smallest_extent(shape_b)) / speed;
   for (const BodyIndex i : {a, b}) {
