@@ -17,9 +17,6 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Speeds along the surface count as rest below this part of the speed that is rest along the
-/// normal.
-constexpr double still_part = 1e-3;
 
 /// Where bodies rest on more points than they have ways to move, rates at these contradict each
 /// other by what the points are off, and no velocities make all of them nothing. What is left is
@@ -161,8 +158,10 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
       const bool struck = options.impact && is_seed(a) && is_seed(b);
       const bool elsewhere =
           options.turning ? least > slow || most < -slow : least < -slow || most > slow;
-      const bool passes =
-          options.impact ? least > slow || (options.held_only && !joined && !struck) : elsewhere;
+      const bool apart = std::find(options.apart.begin(), options.apart.end(), BodyPair{a, b}) !=
+                         options.apart.end();
+      const bool passes = options.impact ? least > slow || (options.held_only && !joined && !struck)
+                                         : elsewhere || apart;
       if (passes && !options.near) {
         continue;  // an impact of its own, or parting
       }

@@ -1,5 +1,7 @@
 #include "core/schemes/event/event_modes.hpp"
 
+#include "core/contacts/completion.hpp"
+#include "core/contacts/group_impacts.hpp"
 #include "core/schemes/event/gathered_group.hpp"
 #include "core/schemes/event/mode_guards.hpp"
 #include "core/schemes/event/turning_group.hpp"
@@ -11,6 +13,13 @@
 
 namespace kairos {
 inline namespace core {
+namespace {
+
+/// Points are off by the gaps that count as touch: so are impulses, by this part of the speeds.
+constexpr double off_by_gaps = 1e-8;
+
+}  // namespace
+
 EventModes::EventModes(EventRun& run, EventMotions& motions, EventPredictor& predictor,
                        const EventAccumulation& accumulation, ContactGraph& graph,
                        std::function<std::unique_ptr<Stepper>(double)> stepper)
@@ -24,6 +33,64 @@ EventModes::EventModes(EventRun& run, EventMotions& motions, EventPredictor& pre
 
 bool EventModes::settle(std::span<const BodyIndex> seeds, Instant t, const Adopt& adopt,
                         const SettleOptions& options) {
+  not_by_pushing_ = false;
+  if (settle_once(seeds, t, adopt, options)) {
+    return true;
+  }
+  if (!not_by_pushing_) {
+    return false;
+  }
+  SettleOptions fewer = options;
+  const std::vector<BodyPair> apart = parting_pairs(seeds, t, options);
+  if (!apart.empty()) {
+    fewer.apart = apart;
+    fewer.pairs -= std::min(fewer.pairs, apart.size());
+    if (settle_once(seeds, t, adopt, fewer)) {
+      return true;
+    }
+  }
+  // Only what rests already is held: all else strikes.
+  fewer.pairs = options.pairs;
+  fewer.remaining = 0.0;
+  return settle_once(seeds, t, adopt, fewer);
+}
+
+/// Which of those that an accumulation would unite part where all that approach stop at once, and
+/// nothing is pulled [Moreau1988].
+std::vector<BodyPair> EventModes::parting_pairs(std::span<const BodyIndex> seeds, Instant t,
+                                                const SettleOptions& options) {
+  const Gathered found = gather(seeds, t, options);
+  ContactSystem system{found.group.bodies, {}};
+  std::vector<std::size_t> first;
+  for (const GroupPatch& patch : found.group.patches) {
+    first.push_back(system.rows.size());
+    for (std::size_t k = 0; k < patch.manifold.size; ++k) {
+      system.add(patch.a, patch.b, patch.manifold.points[k].position, patch.manifold.normal);
+    }
+  }
+  first.push_back(system.rows.size());
+  std::vector<Twist> v = found.group.velocities;
+  if (system.rows.empty() ||
+      newton_group(system, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(first.back())), v)
+              .size() == 0) {
+    return {};
+  }
+  std::vector<BodyPair> apart;
+  for (std::size_t p = 0; p < found.pairs.size(); ++p) {
+    const double rest = found.group.patches[p].still_speed / still_part;
+    bool parts = true;
+    for (std::size_t r = first[p]; r < first[p + 1]; ++r) {
+      parts = parts && system.rate(system.rows[r], v) > rest;
+    }
+    if (parts) {
+      apart.push_back(found.pairs[p]);
+    }
+  }
+  return apart;
+}
+
+bool EventModes::settle_once(std::span<const BodyIndex> seeds, Instant t, const Adopt& adopt,
+                             const SettleOptions& options) {
   Gathered found = gather(seeds, t, options);
   why_not_ = found.refusal;
   if (why_not_.empty() && found.driven) {
@@ -85,6 +152,9 @@ bool EventModes::settle_flat(Gathered found, Instant t, const Adopt& adopt,
       found.pairs.erase(found.pairs.begin() + p);
       continue;
     }
+    if (!completes(found, mode, options)) {
+      return false;
+    }
     commit(found, mode, t, adopt);
     for (std::size_t p = 0; p < until.size(); ++p) {
       run_.push_in_epoch(t + until[p], DueKind::mode_ends, found.pairs[p].first,
@@ -98,6 +168,85 @@ bool EventModes::settle_flat(Gathered found, Instant t, const Adopt& adopt,
     }
     return true;
   }
+  return false;
+}
+
+/// Whether contacts can do what a mode asks of them that completes an accumulation: they push, and
+/// never pull. Impacts that are left and end in touch have pushed only, all of them together; what
+/// would have to be pulled has been taken for such, and turns, or parts.
+bool EventModes::completes(const Gathered& found, const FlatMode& mode,
+                           const SettleOptions& options, const Turning* turning) {
+  if (!options.unite || !(options.remaining > 0.0)) {
+    return true;  // nothing is faster than what rests may be
+  }
+  double rest = 0.0;
+  double turning_apart = 0.0;
+  for (std::size_t p = 0; p < found.pairs.size(); ++p) {
+    if (found.passes[p] != 0) {
+      continue;
+    }
+    const GroupPatch& patch = found.group.patches[p];
+    rest = std::max(rest, patch.still_speed / still_part);
+    double least = std::numeric_limits<double>::infinity();
+    double most = -least;
+    for (std::size_t k = 0; k < patch.manifold.size; ++k) {
+      const double rate =
+          normal_velocity({patch.manifold.points[k].position, patch.manifold.normal, 0.0},
+                          found.states[patch.a], found.states[patch.b]);
+      least = std::min(least, rate);
+      most = std::max(most, rate);
+    }
+    turning_apart = std::max(turning_apart, most - least);
+  }
+  double fastest = 0.0;
+  double change = 0.0;
+  std::vector<Twist> before;
+  for (std::size_t k = 0; k < found.bodies.size(); ++k) {
+    const double r = found.group.radius[k];
+    const Twist& was = found.states[k].twist;
+    const Twist& is = mode.velocities[k];
+    before.push_back(was);
+    fastest = std::max(fastest, was.linear.norm() + r * was.angular.norm());
+    change =
+        std::max(change, (is.linear - was.linear).norm() + r * (is.angular - was.angular).norm());
+  }
+  const double allowed = rest + off_by_gaps * fastest;
+  if (change <= allowed) {
+    return true;
+  }
+  // Of a pair its nearest points were followed: others strike by themselves.
+  if (turning_apart > allowed) {
+    not_by_pushing_ = true;
+    why_not_ = "what still bounces turns, and strikes at more than one point";
+    return false;
+  }
+  std::vector<PushPoint> points;
+  if (turning != nullptr) {
+    const TurningState& start = turning->group.start;
+    for (std::size_t k = 0; k < start.touches.size(); ++k) {
+      const Touch& touch = start.touches[k];
+      if (turning->mode.choices[k].does != FrictionChoice::Does::opens) {
+        const TouchNow now = look_at(touch, start.states[touch.a], start.states[touch.b]);
+        points.push_back(
+            {touch.a, touch.b, now.point_a, now.normal, found.group.patches[touch.pair].friction});
+      }
+    }
+  } else {
+    for (std::size_t p = 0; p < found.pairs.size(); ++p) {
+      const GroupPatch& patch = found.group.patches[p];
+      for (std::size_t k = 0; k < patch.manifold.size && mode.kept[p] != 0; ++k) {
+        points.push_back({patch.a, patch.b, patch.manifold.points[k].position,
+                          patch.manifold.normal, patch.friction});
+      }
+    }
+  }
+  const double pull =
+      pulled(found.group.bodies, found.group.radius, points, before, mode.velocities);
+  if (pull <= allowed) {
+    return true;
+  }
+  not_by_pushing_ = true;
+  why_not_ = "what still bounces would have to be pulled together";
   return false;
 }
 

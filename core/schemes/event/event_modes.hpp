@@ -43,6 +43,7 @@ class EventModes {
     bool turning = false;                  ///< pairs of which some points are at rest, too
     bool turning_only = false;             ///< only if it turns
     bool near = false;                     ///< what is in touch and not at rest, too
+    std::span<const BodyPair> apart = {};  ///< unite: what parts, however slowly
     /// What cannot go on otherwise may turn: the run would stop. What has turned may always.
     bool may_turn = false;
   };
@@ -133,6 +134,12 @@ class EventModes {
   void commit(const Gathered& group, const FlatMode& mode, Instant t, const Adopt& adopt,
               const GivenMotion* alone = nullptr, const Turning* turning = nullptr);
   [[nodiscard]] bool settle_curved(const Gathered& found, Instant t, const Adopt& adopt);
+  [[nodiscard]] bool completes(const Gathered& found, const FlatMode& mode,
+                               const SettleOptions& options, const Turning* turning = nullptr);
+  [[nodiscard]] std::vector<BodyPair> parting_pairs(std::span<const BodyIndex> seeds, Instant t,
+                                                    const SettleOptions& options);
+  [[nodiscard]] bool settle_once(std::span<const BodyIndex> seeds, Instant t, const Adopt& adopt,
+                                 const SettleOptions& options);
   [[nodiscard]] bool settle_flat(Gathered found, Instant t, const Adopt& adopt,
                                  const SettleOptions& options);
   [[nodiscard]] bool settle_turning(std::span<const BodyIndex> seeds, Instant t, const Adopt& adopt,
@@ -176,6 +183,7 @@ class EventModes {
   ContactGraph& graph_;
   std::function<std::unique_ptr<Stepper>(double)> stepper_;  ///< see `Method::contact_stepper`
   std::string why_not_;
+  bool not_by_pushing_ = false;  ///< see `completes`
   /// Whether a body has turned while it touched, and its steps in the frame in which it last did.
   struct Turned {
     bool once = false;

@@ -11,6 +11,10 @@
 namespace kairos {
 inline namespace core {
 
+/// Speeds along the surface count as rest below this part of the speed that is rest along the
+/// normal.
+inline constexpr double still_part = 1e-3;
+
 /// All that touches, at an instant, as bodies of the model and as a group.
 struct EventModes::Gathered {
   std::vector<BodyIndex> bodies;  ///< by place in the group

@@ -99,6 +99,11 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
     why_not_ = "nothing presses";
     return false;
   }
+  FlatMode jump;
+  jump.velocities = turning.mode.velocities;
+  if (!completes(found, jump, asked, &turning)) {
+    return false;
+  }
   const double frame = run_.options.step > 0.0 ? run_.options.step : run_.mean_frame;
   if (creeps(found)) {
     why_not_ = "what begins to slide, or stops, turns its direction faster than steps can follow";
