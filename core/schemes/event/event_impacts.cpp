@@ -234,7 +234,7 @@ void EventContacts::meet(Event& event, Instant t) {
                {.unloaded = unite,
                 .unite = unite,
                 .remaining = finding.remaining,
-                .pairs = finding.kind == Kind::creeps ? 0 : finding.pairs,
+                .pairs = finding.pairs,
                 .may_turn = finding.kind != Kind::collapse})) {
       return;
     }
@@ -681,7 +681,7 @@ void EventContacts::go_on_from(std::span<const BodyIndex> bodies, const BodyPair
              {.unloaded = unite,
               .unite = unite,
               .remaining = finding.remaining,
-              .pairs = finding.kind == Kind::creeps ? 0 : finding.pairs,
+              .pairs = finding.pairs,
               .may_turn = finding.kind != Kind::none && finding.kind != Kind::collapse})) {
     return;
   }
