@@ -337,8 +337,6 @@ std::vector<TouchFeature> faces_of(const Shape& shape) {
     for (std::size_t f = 0; f < p.faces.size(); ++f) {
       faces.push_back({Kind::plane, p.vertices[p.faces[f][0]], p.normals[f], 0.0});
     }
-  } else if (const auto* half_space = std::get_if<HalfSpace>(&shape)) {
-    faces.push_back({Kind::plane, Vector3::Zero(), half_space->normal_B, 0.0});
   }
   return faces;
 }

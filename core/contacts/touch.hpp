@@ -59,7 +59,7 @@ struct TouchNow {
 /// that has no corners.
 [[nodiscard]] std::optional<std::vector<TouchFeature>> corners_of(const Shape& shape);
 
-/// The faces of a box, a hull without rounding or a half-space, each a plane; empty for others.
+/// The faces of a box or of a hull without rounding, each a plane; empty for others.
 [[nodiscard]] std::vector<TouchFeature> faces_of(const Shape& shape);
 
 /// The face of a shape that looks `outward`, unit, near a point of the surface (body frame): its

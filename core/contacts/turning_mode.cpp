@@ -261,6 +261,21 @@ class Search {
   TurningMode mode_;
 };
 
+/// The row along a direction of a touch.
+ContactRow row_of(const TurningState& state, const Touch& touch, const TouchNow& now,
+                  const Vector3& direction) {
+  return {touch.a, touch.b, direction, now.point_a - state.bodies[touch.a].position,
+          now.point_b - state.bodies[touch.b].position};
+}
+
+std::vector<Twist> velocities_of(const TurningState& state) {
+  std::vector<Twist> velocities;
+  for (const BodyState& s : state.states) {
+    velocities.push_back(s.twist);
+  }
+  return velocities;
+}
+
 }  // namespace
 
 TurningMode turning_mode(const TurningState& state, double still) {
@@ -278,8 +293,7 @@ std::vector<Twist> held_velocities(const TurningState& state, const std::vector<
     const Touch& touch = state.touches[k];
     const Vector3& n = now[k].normal;
     const auto row = [&](const Vector3& d) {
-      held.rows.push_back({touch.a, touch.b, d, now[k].point_a - state.bodies[touch.a].position,
-                           now[k].point_b - state.bodies[touch.b].position});
+      held.rows.push_back(row_of(state, touch, now[k], d));
     };
     row(n);
     if (choices[k].does == Does::sticks) {
@@ -288,10 +302,7 @@ std::vector<Twist> held_velocities(const TurningState& state, const std::vector<
       row(n.cross(t1));
     }
   }
-  std::vector<Twist> velocities;
-  for (const BodyState& s : state.states) {
-    velocities.push_back(s.twist);
-  }
+  std::vector<Twist> velocities = velocities_of(state);
   held.project(velocities);
   return velocities;
 }
@@ -301,13 +312,9 @@ std::optional<Parting> parting(const TurningState& state) {
   all.bodies = state.bodies;
   for (const Touch& touch : state.touches) {
     const TouchNow now = look_at(touch, state.states[touch.a], state.states[touch.b]);
-    all.rows.push_back({touch.a, touch.b, now.normal, now.point_a - state.bodies[touch.a].position,
-                        now.point_b - state.bodies[touch.b].position});
+    all.rows.push_back(row_of(state, touch, now, now.normal));
   }
-  Parting found;
-  for (const BodyState& s : state.states) {
-    found.velocities.push_back(s.twist);
-  }
+  Parting found{velocities_of(state), {}};
   const Complementarity impulses =
       solve_complementarity(all.coupling(), all.rates(found.velocities));
   if (!impulses.solved) {
@@ -330,8 +337,7 @@ void put_at_gaps(TurningState& state, const std::vector<char>& moves) {
     }
     const Touch& touch = state.touches[k];
     const TouchNow now = look_at(touch, state.states[touch.a], state.states[touch.b]);
-    held.rows.push_back({touch.a, touch.b, now.normal, now.point_a - state.bodies[touch.a].position,
-                         now.point_b - state.bodies[touch.b].position});
+    held.rows.push_back(row_of(state, touch, now, now.normal));
     off.push_back(now.gap - touch.gap);
   }
   if (held.rows.empty()) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace kairos::experiments {
@@ -66,7 +67,7 @@ class Builder : SceneBuilder {
   RandomJoint& join(const std::string& kind, std::vector<std::string> bodies,
                     const Vector3& anchor = Vector3::Zero(),
                     const Vector3& axis = Vector3::Zero()) {
-    scene_.joints.push_back({kind, std::move(bodies), anchor, axis, false});
+    scene_.joints.push_back({kind, std::move(bodies), anchor, axis});
     return scene_.joints.back();
   }
   /// All bodies so far turn about a point as one, which every joint allows; a hinge about its axis.
@@ -236,7 +237,7 @@ class Builder : SceneBuilder {
     const std::string from = driver.name;
     // What hangs has the velocity of what it hangs from: at the start, 2 pi f A cos(phase).
     const Vector3 velocity =
-        2.0 * 3.14159265358979323846 * driver.frequency * std::cos(driver.phase) * driver.swing;
+        2.0 * std::numbers::pi * driver.frequency * std::cos(driver.phase) * driver.swing;
     const Vector3 start = std::sin(driver.phase) * driver.swing;
     const Vector3 to = start + hanging() * 0.7;
     const std::string name = ball(to, 0.1).name;
@@ -281,19 +282,13 @@ class Builder : SceneBuilder {
     for (int attempt = 0; attempt < 20; ++attempt) {
       b.position = {random_.uniform(-within, within), random_.uniform(-within, within),
                     random_.uniform(-within, within)};
-      if (std::all_of(scene_.bodies.begin(), scene_.bodies.end(),
-                      [&b](const RandomBody& other) { return apart(b, other); })) {
+      if (std::all_of(scene_.bodies.begin(), scene_.bodies.end(), [&b](const RandomBody& other) {
+            return apart(b, other, other.swing.norm());
+          })) {
         scene_.bodies.push_back(b);
         return;
       }
     }
-  }
-
-  static bool apart(const RandomBody& b, const RandomBody& other) {
-    if (other.shape == "half-space") {
-      return other.normal.dot(b.position - other.position) > b.reach();
-    }
-    return (b.position - other.position).norm() > b.reach() + other.reach() + other.swing.norm();
   }
 };
 

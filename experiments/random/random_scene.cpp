@@ -63,9 +63,6 @@ void write_joint(std::string& out, const RandomJoint& joint) {
   if (joint.kind == "hinge" || joint.kind == "slider") {
     out += fmt::format("axis = {}\n", vector(joint.axis));
   }
-  if (joint.collide) {
-    out += "collide = true\n";
-  }
 }
 
 /// Makes one scene; its lengths are about 1, and scaled in the end.
@@ -182,13 +179,6 @@ class Maker {
     }
   }
 
-  static bool apart(const RandomBody& b, const RandomBody& other) {
-    if (other.shape == "half-space") {
-      return other.normal.dot(b.position - other.position) > b.reach();
-    }
-    return (b.position - other.position).norm() > b.reach() + other.reach();
-  }
-
   Random random_;
   RandomScene scene_;
   double length_ = 1.0;
@@ -198,6 +188,13 @@ class Maker {
 };
 
 }  // namespace
+
+bool apart(const RandomBody& b, const RandomBody& other, double way) {
+  if (other.shape == "half-space") {
+    return other.normal.dot(b.position - other.position) > b.reach();
+  }
+  return (b.position - other.position).norm() > b.reach() + other.reach() + way;
+}
 
 std::string RandomScene::toml() const {
   std::string out = fmt::format(

@@ -45,13 +45,16 @@ struct RandomBody {
   [[nodiscard]] double reach() const;
 };
 
+/// Whether a body is clear of another, wherever both are turned, and of all places up to `way` (m)
+/// beside it.
+[[nodiscard]] bool apart(const RandomBody& b, const RandomBody& other, double way = 0.0);
+
 /// A joint of a random scene.
 struct RandomJoint {
   std::string kind;                 ///< ball, hinge, slider, rod, weld
   std::vector<std::string> bodies;  ///< one: the other side is the world
   Vector3 anchor = Vector3::Zero();
   Vector3 axis = Vector3::Zero();  ///< of a hinge or a slider
-  bool collide = false;
 };
 
 /// A valid scene that nobody thought of: what a person could have written, none of whose solids

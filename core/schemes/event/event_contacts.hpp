@@ -1,6 +1,5 @@
 #pragma once
 
-#include "core/contacts/touch.hpp"
 #include "core/schemes/event/event_accumulation.hpp"
 #include "core/schemes/event/event_modes.hpp"
 #include "core/schemes/event/event_motions.hpp"
@@ -86,9 +85,6 @@ class EventContacts {
   void set_free(std::span<const BodyIndex> bodies, Instant t);
   [[nodiscard]] Contact contact_at(BodyIndex a, BodyIndex b, Instant t, double bracket) const;
   void look_again(BodyIndex a, BodyIndex b, Instant t, double bracket);
-  [[nodiscard]] static bool separates(const TouchFeature& face, const BodyState& own,
-                                      std::span<const TouchFeature> corners, const BodyState& other,
-                                      bool later);
   [[nodiscard]] double passes_by(BodyIndex a, BodyIndex b, Instant t) const;
   void touch(BodyIndex a, BodyIndex b, const Contact& contact, Instant t);
   [[nodiscard]] bool lands(BodyIndex a, BodyIndex b, const Contact& contact, Instant t);

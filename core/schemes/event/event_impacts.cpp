@@ -1,9 +1,9 @@
 // `EventContacts` when bodies strike each other: two of them, or a group in touch.
 #include "core/contacts/centre_of_pressure.hpp"
 #include "core/contacts/group_law.hpp"
-#include "core/contacts/touch.hpp"
 #include "core/impact_check.hpp"
 #include "core/schemes/event/event_contacts.hpp"
+#include "core/schemes/event/slides_past.hpp"
 
 #include <fmt/format.h>
 
@@ -23,8 +23,6 @@ namespace {
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// How often where a patch is pressed is put where the impulse that follows from that asks for.
 constexpr int most_presses = 32;
-/// What slides past an edge of another is left alone on so much of its extent.
-constexpr double past_edges = 1e-6;
 
 /// Whether an impulse p goes through the middles of both, to roundoff: then it turns neither.
 bool is_along(const Vector3& p, const Pose& a, const Pose& b) {
@@ -82,35 +80,7 @@ bool EventContacts::meet_in_one_box(BodyIndex a, BodyIndex b, Instant t) {
   return true;
 }
 
-/// Whether the plane of a face of `own` separates it, up to rounding, from the other, whose corners
-/// come no nearer to it; `later`: only whether it separates them.
-bool EventContacts::separates(const TouchFeature& face, const BodyState& own,
-                              std::span<const TouchFeature> corners, const BodyState& other,
-                              bool later) {
-  const Vector3 n = own.pose.orientation * face.direction;
-  const Vector3 on = own.pose.to_world(face.at);
-  const double rounding = 16.0 * 12.0 * epsilon * (on.norm() + other.pose.position.norm());
-  for (const TouchFeature& corner : corners) {
-    const Vector3 x = other.pose.to_world(corner.at) - corner.radius * n;
-    const double above = n.dot(x - on);
-    if (above < -rounding) {
-      return false;
-    }
-    if (!later && above <= rounding) {
-      const Vector3 v = other.twist.at(x, other.pose.position) - own.twist.at(x, own.pose.position);
-      if (n.dot(v) < -16.0 * epsilon * v.norm()) {
-        return false;
-      }
-    }
-  }
-  return true;
-}
-
-/// Two that touch may slide past each other: the plane of a face of one of them separates both, and
-/// nothing comes nearer to it. Which edges meet is then chance: what slides from one tile onto the
-/// next, at the same level, does not strike its side. Of what never moves only. How long they are
-/// to be left alone, s, until they are past those edges: short, and the plane separates them still
-/// at its end; 0: they strike.
+/// How long what slides past a body that never moves is to be left alone, s; 0: it strikes.
 double EventContacts::passes_by(BodyIndex a, BodyIndex b, Instant t) const {
   if (run_.model.mobility(a) != Mobility::fixed && run_.model.mobility(b) != Mobility::fixed) {
     return 0.0;  // both may be moved in the meantime
@@ -119,48 +89,10 @@ double EventContacts::passes_by(BodyIndex a, BodyIndex b, Instant t) const {
   if (!modes_.holds(mover) && !motions_.support(mover)) {
     return 0.0;  // it comes along nothing that would hold it at one level
   }
-  const Shape& shape_a = run_.model.shape(a);
-  const Shape& shape_b = run_.model.shape(b);
-  const auto corners_a = corners_of(shape_a);
-  const auto corners_b = corners_of(shape_b);
-  // A half-space has no corners, and no edge that could be met by chance.
-  if (!corners_a || !corners_b || corners_a->empty() || corners_b->empty()) {
-    return 0.0;
-  }
-  const BodyState& at_a = motions_.now(a);
-  const BodyState& at_b = motions_.now(b);
-  const double speed = (at_b.twist.linear - at_a.twist.linear).norm() +
-                       at_a.twist.angular.norm() * bounding_radius(shape_a) +
-                       at_b.twist.angular.norm() * bounding_radius(shape_b);
-  double duration =
-      past_edges * std::min(smallest_extent(shape_a), smallest_extent(shape_b)) / speed;
-  for (const BodyIndex i : {a, b}) {
-    const auto moving = motions_.moving(i);
-    duration = std::min(duration, moving.motion().duration - (t - moving.motion().start));
-  }
-  const auto later = [&](BodyIndex i) {
-    const auto moving = motions_.moving(i);
-    const double s = t - moving.motion().start + duration;
-    return BodyState{moving.motion().pose(s), moving.motion().twist(s)};
-  };
-  if (!(duration > 0.0)) {
-    return 0.0;
-  }
-  const BodyState later_a = later(a);
-  const BodyState later_b = later(b);
-  const auto any = [&](const Shape& shape, const BodyState& own, const BodyState& own_later,
-                       std::span<const TouchFeature> corners, const BodyState& other,
-                       const BodyState& other_later) {
-    const std::vector<TouchFeature> faces = faces_of(shape);
-    return std::any_of(faces.begin(), faces.end(), [&](const TouchFeature& face) {
-      return separates(face, own, corners, other, false) &&
-             separates(face, own_later, corners, other_later, true);
-    });
-  };
-  return any(shape_a, at_a, later_a, *corners_b, at_b, later_b) ||
-                 any(shape_b, at_b, later_b, *corners_a, at_a, later_a)
-             ? duration
-             : 0.0;
+  const auto of_a = motions_.moving(a);
+  const auto of_b = motions_.moving(b);
+  return slides_past({run_.model.shape(a), of_a.motion()}, motions_.now(a),
+                     {run_.model.shape(b), of_b.motion()}, motions_.now(b), t);
 }
 
 void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double bracket, bool decided) {
