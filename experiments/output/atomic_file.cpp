@@ -5,6 +5,8 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -37,10 +39,35 @@ std::string folder(const std::string& path) {
   return name == 0 ? "." : path.substr(0, name);
 }
 
-/// Beside the final name, hidden, and different for every process and file.
-std::string temporary_name(const std::string& path) {
+/// Beside the final name, and hidden.
+std::string hidden_name(const std::string& path, std::string_view suffix) {
   const std::size_t name = name_begin(path);
-  return fmt::format("{}.{}.{}.partial", path.substr(0, name), path.substr(name), ::getpid());
+  return fmt::format("{}.{}{}", path.substr(0, name), path.substr(name), suffix);
+}
+
+/// Waits until no living process holds the file of this name, and removes it if it is still there.
+void remove_abandoned(const std::string& name) {
+  const int descriptor = ::open(name.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) {
+    if (errno != ENOENT) {
+      fail(name);
+    }
+    return;
+  }
+  struct ::stat held = {};
+  struct ::stat named = {};
+  const bool locked = ::flock(descriptor, LOCK_EX) == 0;
+  const bool free = locked || errno == EINTR;
+  const bool same = locked && ::fstat(descriptor, &held) == 0 &&
+                    ::stat(name.c_str(), &named) == 0 && held.st_dev == named.st_dev &&
+                    held.st_ino == named.st_ino;
+  const bool cleared = free && (!same || ::unlink(name.c_str()) == 0);
+  const int why = errno;
+  ::close(descriptor);
+  if (!cleared) {
+    errno = why;
+    fail(name);
+  }
 }
 
 /// Where the file will be: the end of symbolic links, so that they stay. A device, a pipe or a
@@ -68,7 +95,7 @@ AtomicFile::AtomicFile(const std::string& path) : path_(target(path)) {
   // A file without a name vanishes with its process, whatever kills it.
   descriptor_ = ::open(folder(path_).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
   if (descriptor_ < 0) {  // not every file system has them
-    temporary_ = temporary_name(path_);
+    temporary_ = hidden_name(path_, fmt::format(".{}.partial", ::getpid()));
     descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   }
   if (descriptor_ < 0) {
@@ -147,17 +174,33 @@ void AtomicFile::finish() {
 
 void AtomicFile::publish() {
   if (temporary_.empty()) {
-    const std::string anonymous = fmt::format("/proc/self/fd/{}", descriptor_);
-    const std::string name = temporary_name(path_);
-    if (::linkat(AT_FDCWD, anonymous.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0) {
-      fail(path_);
-    }
-    temporary_ = name;
-  }
-  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) {
+    publish_anonymous();
+  } else if (std::rename(temporary_.c_str(), path_.c_str()) != 0) {
     fail(path_);
   }
   temporary_.clear();
+}
+
+// The system gives a file without a name a new name only, so that a replacement takes two steps.
+// The name between them is the same for every process, and who bears it is locked: what a kill
+// between them left is told by its open lock and cleared away; a living writer is waited for.
+void AtomicFile::publish_anonymous() {
+  const std::string anonymous = fmt::format("/proc/self/fd/{}", descriptor_);
+  const std::string name = hidden_name(path_, ".complete");
+  ::flock(descriptor_, LOCK_EX);
+  while (::linkat(AT_FDCWD, anonymous.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0) {
+    if (errno != EEXIST) {
+      fail(path_);
+    }
+    remove_abandoned(name);
+  }
+  if (std::rename(name.c_str(), path_.c_str()) != 0) {
+    const int why = errno;
+    ::unlink(name.c_str());
+    errno = why;
+    fail(path_);
+  }
+  ::flock(descriptor_, LOCK_UN);
 }
 
 void write_file(const std::string& path, std::string_view text) {

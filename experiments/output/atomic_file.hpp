@@ -11,7 +11,8 @@ namespace kairos::experiments {
 
 /// A file that appears whole or not at all: written without a name (where the file system can;
 /// under a hidden one elsewhere) in its folder, flushed to the disk, then renamed. Every write is
-/// checked. A process that is killed leaves nothing.
+/// checked. A process that is killed leaves nothing; one that is killed in the very act of renaming
+/// may leave a whole copy under a hidden name, which the next writer of the same path removes.
 class AtomicFile {
  public:
   /// Opens the temporary file. Throws `InputError` where that is impossible, or where `path` is a
@@ -40,6 +41,7 @@ class AtomicFile {
 
  private:
   void flush();
+  void publish_anonymous();
 
   std::string path_;
   std::string temporary_;  ///< empty: has no name (yet)
