@@ -2,6 +2,7 @@
 
 #include "core/exponential.hpp"
 #include "core/large_pages.hpp"
+#include "core/prefetch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -183,6 +184,19 @@ void CellGrid::append_chain(const Cell* cell, std::vector<Id>& out) const {
   }
 }
 
+void CellGrid::look_around(const CellIndex& cell) const {
+  const std::int64_t x = turned(cell[0] - 1, 0);
+  std::int64_t z = turned(cell[2] - 1, 2);
+  for (int dz = 0; dz < 3; ++dz, z = next(z, 2)) {
+    std::int64_t y = turned(cell[1] - 1, 1);
+    for (int dy = 0; dy < 3; ++dy, y = next(y, 1)) {
+      const std::size_t first = at(x, y, z);
+      prefetch(cells_[first]);
+      prefetch(cells_[std::min(first + 2, cells_.size() - 1)]);
+    }
+  }
+}
+
 void CellGrid::around(const CellIndex& cell, std::vector<Id>& out) const {
   block(cell, {1, 1, 1}, out);
 }
@@ -198,13 +212,35 @@ void CellGrid::block(const CellIndex& cell, const CellIndex& wide, std::vector<I
   out.resize(before + (most_cells + 1) * room);
   Id* end = out.data() + before;
   Id chains = none;
-  const bool turns = first[0] + 2 * wide[0] >= count_[0];
   const auto take = [&end, &chains](const Cell& of) {
     // Both places are copied, though most cells have none or one: this saves a branch.
     std::memcpy(end, of.bodies.data(), sizeof of.bodies);
     end += of.count;
     chains &= of.next;
   };
+  const auto turns_along = [&](std::size_t axis) {
+    return first[axis] + 2 * wide[axis] >= count_[axis];
+  };
+  const bool turns = turns_along(0);
+  if (!turns && !turns_along(1) && !turns_along(2)) {  // most blocks lie as their cells do
+    const Cell* layer = &cells_[at(first[0], first[1], first[2])];
+    const std::int64_t to_next_layer = count_[0] * count_[1];
+    for (std::int64_t dz = -wide[2]; dz <= wide[2]; ++dz, layer += to_next_layer) {
+      const Cell* row = layer;
+      for (std::int64_t dy = -wide[1]; dy <= wide[1]; ++dy, row += count_[0]) {
+        take(row[0]);
+        if (wide[0] != 0) {
+          take(row[1]);
+          take(row[2]);
+        }
+      }
+    }
+    out.resize(static_cast<std::size_t>(end - out.data()));
+    if (chains != none) {
+      append_chains(first, wide, out);
+    }
+    return;
+  }
   std::int64_t z = first[2];
   for (std::int64_t dz = -wide[2]; dz <= wide[2]; ++dz, z = next(z, 2)) {
     std::int64_t y = first[1];

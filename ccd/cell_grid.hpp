@@ -49,6 +49,8 @@ class CellGrid {
   void insert(const CellIndex& cell, BodyIndex i);
   void remove(const CellIndex& cell, BodyIndex i);
 
+  /// Those are about to be asked for.
+  void look_around(const CellIndex& cell) const;
   /// Bodies in the cell and its 26 neighbours, appended.
   void around(const CellIndex& cell, std::vector<Id>& out) const;
   /// Of those around `now`, the ones that are not around `before`.

@@ -6,6 +6,8 @@
 #include "ccd/swept_windows.hpp"
 #include "core/archive.hpp"
 #include "core/large_pages.hpp"
+#include "core/looks_ahead.hpp"
+#include "core/prefetch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -85,7 +87,7 @@ struct FlightWay {
   [[nodiscard]] static double time_within(double /*least*/, double /*s*/) { return infinity; }
 };
 
-class Cells final : public Neighbourhood {
+class Cells final : public Neighbourhood, public LooksAhead {
  public:
   Cells(const Model& model, double tolerance, const CellSize& size)
       : layout_(model, tolerance, size),
@@ -170,6 +172,13 @@ class Cells final : public Neighbourhood {
       }
     } else if (places_[i].at == Place::in_box) {
       large_.go_on_as(i, n);
+    }
+  }
+
+  void look_up(BodyIndex i) const override { prefetch(places_[i]); }
+  void look_around(BodyIndex i) const override {
+    if (places_[i].at == Place::in_cell) {
+      grid_.look_around(places_[i].cell());
     }
   }
 
@@ -323,7 +332,8 @@ class Cells final : public Neighbourhood {
       const double c = way.half_acceleration(k);
       const double v = way.velocity(k, s);
       if (c == 0.0) {
-        stays = std::min(stays, v > 0.0 ? above / v : v < 0.0 ? below / -v : infinity);
+        const double leaves = (v > 0.0 ? above : below) / std::abs(v);
+        stays = v != 0.0 ? std::min(stays, leaves) : stays;
       } else {
         stays = std::min({stays, time_to_rise(v, c, above), time_to_rise(-v, -c, below)});
       }

@@ -3,13 +3,16 @@
 #include "ccd/advancement.hpp"
 #include "ccd/ball_filter.hpp"
 #include "ccd/closed_form.hpp"
+#include "ccd/pair_overlap.hpp"
 #include "ccd/shape_detector.hpp"
+#include "ccd/sphere_plane.hpp"
 #include "ccd/sphere_sphere.hpp"
+#include "core/ball_detector.hpp"
 
 namespace kairos::ccd {
 namespace {
 
-class Certified final : public ShapeDetector {
+class Certified final : public ShapeDetector, public BallDetector {
  public:
   [[nodiscard]] DetectorInfo info() const override {
     return {.name = "certified",
@@ -21,6 +24,16 @@ class Certified final : public ShapeDetector {
   [[nodiscard]] std::optional<TimeOfImpact> ball_impact(const BallFlight& a, const BallFlight& b,
                                                         const Window& window) const override {
     return sphere_sphere_impact(a, b, window);
+  }
+  [[nodiscard]] Overlap ball_overlap(const Vector3& p_a, double radius_a, const Vector3& p_b,
+                                     double radius_b) const override {
+    return measure_overlap_of_balls(p_a, radius_a, p_b, radius_b);
+  }
+  [[nodiscard]] std::optional<TimeOfImpact> ball_meets_plane(const BallFlight& ball,
+                                                             const HalfSpace& half_space,
+                                                             const Pose& at_rest,
+                                                             const Window& window) const override {
+    return sphere_plane_impact(ball, half_space, at_rest, window);
   }
   void clear_times(const FlightsBeside& balls, double tolerance,
                    std::span<double> clear) const override {

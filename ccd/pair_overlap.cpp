@@ -12,9 +12,12 @@
 namespace kairos::ccd {
 namespace {
 
+bool balls_overlap(const Vector3& p_a, const Vector3& p_b, double reach) {
+  return (p_b - p_a).squaredNorm() <= reach * reach;
+}
+
 bool overlap(const Sphere& a, const Pose& pose_a, const Sphere& b, const Pose& pose_b) {
-  const double reach = a.radius + b.radius;
-  return (pose_b.position - pose_a.position).squaredNorm() <= reach * reach;
+  return balls_overlap(pose_a.position, pose_b.position, a.radius + b.radius);
 }
 
 bool overlap(const Sphere& sphere, const Pose& pose_s, const Box& box, const Pose& pose_b) {
@@ -43,12 +46,7 @@ bool overlap(const Box& box, const Pose& pose_b, const HalfSpace& half_space, co
 }
 
 Overlap measure(const Sphere& a, const Pose& pose_a, const Sphere& b, const Pose& pose_b) {
-  const Vector3 d = pose_b.position - pose_a.position;
-  const double distance = d.norm();
-  const double gap = distance - (a.radius + b.radius);
-  const Vector3 n = distance > 0.0 ? Vector3(d / distance) : Vector3(Vector3::UnitY());
-  const Vector3 point = pose_a.position + n * (a.radius + 0.5 * gap);
-  return {overlap(a, pose_a, b, pose_b), gap, n, point};
+  return measure_overlap_of_balls(pose_a.position, a.radius, pose_b.position, b.radius);
 }
 
 Overlap measure(const Sphere& sphere, const Pose& pose_s, const Box& box, const Pose& pose_b) {
@@ -159,6 +157,16 @@ bool shapes_overlap(const Shape& a, const Pose& pose_a, const Shape& b, const Po
     return overlap(*box, pose_a, std::get<HalfSpace>(b), pose_b);
   }
   return false;
+}
+
+Overlap measure_overlap_of_balls(const Vector3& p_a, double radius_a, const Vector3& p_b,
+                                 double radius_b) {
+  const Vector3 d = p_b - p_a;
+  const double distance = d.norm();
+  const double gap = distance - (radius_a + radius_b);
+  const Vector3 n = distance > 0.0 ? Vector3(d / distance) : Vector3(Vector3::UnitY());
+  const Vector3 point = p_a + n * (radius_a + 0.5 * gap);
+  return {balls_overlap(p_a, p_b, radius_a + radius_b), gap, n, point};
 }
 
 Overlap measure_overlap(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {

@@ -12,5 +12,8 @@ namespace kairos::ccd {
 /// Signed gap, normal from a to b, and centroid of the contact patch.
 [[nodiscard]] Overlap measure_overlap(const Shape& a, const Pose& pose_a, const Shape& b,
                                       const Pose& pose_b);
+/// The same of two spheres.
+[[nodiscard]] Overlap measure_overlap_of_balls(const Vector3& p_a, double radius_a,
+                                               const Vector3& p_b, double radius_b);
 
 }  // namespace kairos::ccd

@@ -3,6 +3,8 @@
 #include "ccd/closed_form.hpp"
 #include "ccd/descent_answer.hpp"
 #include "ccd/plane_normal.hpp"
+#include "ccd/query_check.hpp"
+#include "ccd/sphere_sphere.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -179,6 +181,14 @@ struct SphereAbovePlane {
   }
 };
 
+TimeOfImpact impact_of(const SphereAbovePlane& pair) {
+  TimeOfImpact toi = descent_answer(first_descent(pair.gap, pair.touch()), pair.window.duration);
+  if (toi.status != ToiStatus::separated) {
+    pair.complete(toi);
+  }
+  return toi;
+}
+
 const Sphere* sphere_of(const MovingShape& a, const MovingShape& b) {
   const auto* sphere = std::get_if<Sphere>(&a.shape);
   return sphere != nullptr && std::holds_alternative<HalfSpace>(b.shape) &&
@@ -196,13 +206,24 @@ std::optional<TimeOfImpact> sphere_plane_impact(const MovingShape& a, const Movi
   if (sphere == nullptr) {
     return std::nullopt;
   }
-  const SphereAbovePlane pair(*sphere, a.motion, std::get<HalfSpace>(b.shape), b.motion, window);
-  std::optional<TimeOfImpact> toi =
-      descent_answer(first_descent(pair.gap, pair.touch()), window.duration);
-  if (toi->status != ToiStatus::separated) {
-    pair.complete(*toi);
+  return impact_of({*sphere, a.motion, std::get<HalfSpace>(b.shape), b.motion, window});
+}
+
+std::optional<TimeOfImpact> sphere_plane_impact(const BallFlight& ball, const HalfSpace& half_space,
+                                                const Pose& at_rest, const Window& window) {
+  if (!(window.duration >= 0.0) || !is_ordinary(ball, window) ||
+      !(at_rest.position.lpNorm<1>() <= greatest_size)) {
+    return std::nullopt;
   }
-  return toi;
+  Motion flight;
+  flight.start = ball.start;
+  flight.position = Polynomial<3>(ball.position, ball.velocity, 0.5 * ball.acceleration);
+  Motion plane;
+  plane.start = window.start;
+  plane.position[0] = at_rest.position;
+  const Quaternion& q = at_rest.orientation;
+  plane.quaternion[0] = Vector4(q.w(), q.x(), q.y(), q.z());
+  return impact_of({Sphere{ball.radius}, flight, half_space, plane, window});
 }
 
 std::optional<TimeOfImpact> sphere_plane_separation(const MovingShape& a, const MovingShape& b,

@@ -225,25 +225,26 @@ TimeOfImpact impact_of(const Ball& a, const Ball& b, const Window& window, const
   return toi;
 }
 
-/// Whether a query about this ball is one that `check_query` and `within_range` let pass, for sure:
-/// the sum of what its coordinates may come to is from above.
-bool is_ordinary(const Ball& ball, const Window& window) {
+}  // namespace
+
+bool is_ordinary(const BallFlight& ball, const Window& window) {
   const double s0 = window.start - ball.start;
   const double s = s0 + window.duration;
   const double t = std::isfinite(s) ? s : 1.0;
-  const double size = (ball.c.lpNorm<1>() * t + ball.v.lpNorm<1>()) * t + ball.p.lpNorm<1>();
+  const double size = (0.5 * ball.acceleration.lpNorm<1>() * t + ball.velocity.lpNorm<1>()) * t +
+                      ball.position.lpNorm<1>();
   return s0 >= 0.0 && size <= greatest_size && ball.radius >= least_extent &&
          ball.radius <= greatest_size;
 }
 
-}  // namespace
-
 std::optional<TimeOfImpact> sphere_sphere_impact(const BallFlight& of_a, const BallFlight& of_b,
                                                  const Window& window) {
+  if (!(window.duration >= 0.0) || !is_ordinary(of_a, window) || !is_ordinary(of_b, window)) {
+    return std::nullopt;
+  }
   const Ball a(of_a);
   const Ball b(of_b);
-  if (!(a.c == b.c) || !(window.duration >= 0.0) || !is_ordinary(a, window) ||
-      !is_ordinary(b, window)) {
+  if (!(a.c == b.c)) {
     return std::nullopt;
   }
   // `retreat_from_overlap`, without poses.

@@ -11,6 +11,9 @@ namespace kairos::ccd {
 [[nodiscard]] std::optional<TimeOfImpact> sphere_sphere_impact(const MovingShape& a,
                                                                const MovingShape& b,
                                                                const Window& window);
+/// Whether a query about this ball, which never ends, is one that `check_query` and `within_range`
+/// let pass, for sure: what its coordinates may come to is taken from above.
+[[nodiscard]] bool is_ordinary(const BallFlight& ball, const Window& window);
 /// The same of two balls that never end, bit for bit; also empty where a query might have to be
 /// refused.
 [[nodiscard]] std::optional<TimeOfImpact> sphere_sphere_impact(const BallFlight& a,

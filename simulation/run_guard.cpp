@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string_view>
@@ -41,6 +42,7 @@ void RunGuard::begin(const Model& model) {
       free_top_[i] = force.force->involves_rotation() ? 0 : free_top_[i];
     }
   }
+  has_free_tops_ = std::find(free_top_.begin(), free_top_.end(), 1) != free_top_.end();
   inner_.begin(model);
 }
 
@@ -60,13 +62,18 @@ void RunGuard::frame(const Frame& frame) {
 void RunGuard::event(const Event& event) {
   if (event.kind == EventKind::contact_begins) {  // contact may turn them from this instant on
     free_top_[event.a] = free_top_[event.b] = 0;
+    most_energy_[event.a] = most_energy_[event.b] = unknown;
   }
-  check_spin(event.before_a, event.a, event.time);
-  check_spin(event.before_b, event.b, event.time);
+  if (has_free_tops_) {
+    check_spin(event.before_a, event.a, event.time);
+    check_spin(event.before_b, event.b, event.time);
+  }
   check_finite(event.after_a, event.a, event.time);
   check_finite(event.after_b, event.b, event.time);
-  most_energy_[event.a] = most_spin_energy(event.after_a, event.a);
-  most_energy_[event.b] = most_spin_energy(event.after_b, event.b);
+  if (has_free_tops_) {
+    most_energy_[event.a] = most_spin_energy(event.after_a, event.a);
+    most_energy_[event.b] = most_spin_energy(event.after_b, event.b);
+  }
   ++last_.cost.events;
   inner_.event(event);
 }

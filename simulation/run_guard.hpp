@@ -49,6 +49,7 @@ class RunGuard : public Recorder {
   const bool watch_spin_;
   const Model* model_ = nullptr;
   std::vector<char> free_top_;       ///< turns, and neither force nor contact involves that
+  bool has_free_tops_ = false;       ///< else nobody's spin is watched
   std::vector<double> most_energy_;  ///< J, since the last impact; infinite: not known yet
   RunResult last_;
 };

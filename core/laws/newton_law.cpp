@@ -3,6 +3,7 @@
 #include "core/contacts/group_impacts.hpp"
 #include "core/contacts/group_law.hpp"
 #include "core/laws/routh_law.hpp"
+#include "core/point_law.hpp"
 
 #include <limits>
 #include <utility>
@@ -93,17 +94,32 @@ struct Side {
   Vector w;
 };
 
+/// The same of a body that does not turn.
+struct PointSide {
+  using Vector = Vector3;
+
+  explicit PointSide(const StruckPoint& point) : mass(point.mass), v(point.velocity) {}
+
+  [[nodiscard]] const Vector3& at_contact() const { return v; }
+  [[nodiscard]] static double unfelt(const Vector3& /*n*/) { return 0.0; }
+  [[nodiscard]] double compliance(const Vector3& /*n*/) const { return 1.0 / mass; }
+  void push(const Vector3& impulse) { v += impulse / mass; }
+
+  double mass;
+  Vector3& v;
+};
+
 /// The impulse on b along n, after restitution e; `loss`: of energy, <= 0.
-template <typename Real>
-typename Side<Real>::Vector collide(Side<Real>& a, Side<Real>& b,
-                                    const typename Side<Real>::Vector& n, Real e, Real& loss) {
+template <typename OneSide, typename Real>
+typename OneSide::Vector collide(OneSide& a, OneSide& b, const typename OneSide::Vector& n, Real e,
+                                 Real& loss) {
   const Real approach = n.dot(b.at_contact() - a.at_contact()) - (b.unfelt(n) - a.unfelt(n));
   const Real inverse_mass = a.compliance(n) + b.compliance(n);
   if (approach >= 0 || inverse_mass <= 0) {
-    return Side<Real>::Vector::Zero();
+    return OneSide::Vector::Zero();
   }
   loss = Real(0.5) * (e * e - 1) * approach * approach / inverse_mass;
-  const typename Side<Real>::Vector impulse = (-(1 + e) * approach / inverse_mass) * n;
+  const typename OneSide::Vector impulse = (-(1 + e) * approach / inverse_mass) * n;
   a.push(-impulse);
   b.push(impulse);
   return impulse;
@@ -131,7 +147,7 @@ double surplus(const BodyState& computed, const Side<long double>& exact) {
   return static_cast<double>(energy);
 }
 
-class NewtonLaw final : public ImpactLaw, public GroupLaw {
+class NewtonLaw final : public ImpactLaw, public GroupLaw, public PointLaw {
  public:
   /// Bodies that merely touch are struck one pair after the other; what is held together takes an
   /// impact as one, for its contacts have no velocity of which a part could be returned.
@@ -160,7 +176,7 @@ class NewtonLaw final : public ImpactLaw, public GroupLaw {
     Side<double> of_a(a, a.state, contact);
     Side<double> of_b(b, b.state, contact);
     const double e = contact.restitution;
-    const Vector3 impulse = collide<double>(of_a, of_b, contact.normal, e, energy.restitution_loss);
+    const Vector3 impulse = collide(of_a, of_b, contact.normal, e, energy.restitution_loss);
     if (impulse.isZero(0.0)) {
       return energy;
     }
@@ -168,6 +184,15 @@ class NewtonLaw final : public ImpactLaw, public GroupLaw {
     energy.driven_work = driven_work(a, of_a, impulse) + driven_work(b, of_b, -impulse);
     a.state.twist = {of_a.v, of_a.w};
     b.state.twist = {of_b.v, of_b.w};
+    return energy;
+  }
+
+  [[nodiscard]] ImpactEnergy apply_to_points(const Contact& contact, const StruckPoint& a,
+                                             const StruckPoint& b) const override {
+    ImpactEnergy energy;
+    PointSide of_a(a);
+    PointSide of_b(b);
+    (void)collide(of_a, of_b, contact.normal, contact.restitution, energy.restitution_loss);
     return energy;
   }
 
@@ -184,7 +209,7 @@ class NewtonLaw final : public ImpactLaw, public GroupLaw {
     const auto n = contact.normal.cast<long double>().normalized().eval();
     const auto e = static_cast<long double>(contact.restitution);
     long double loss = 0.0L;
-    if (collide<long double>(of_a, of_b, n, e, loss).isZero(0.0L)) {
+    if (collide(of_a, of_b, n, e, loss).isZero(0.0L)) {
       return 0.0;
     }
     return surplus(a.state, of_a) + surplus(b.state, of_b);

@@ -1,4 +1,5 @@
 #include "core/model.hpp"
+#include "core/plain_balls.hpp"
 #include "experiments/cli/commands.hpp"
 #include "experiments/cli/run_options.hpp"
 #include "simulation/registry.hpp"
@@ -93,6 +94,16 @@ void explain_friction(const Model& model) {
   }
 }
 
+/// Which bodies `event-driven` lets meet in fewer words.
+void explain_plain_balls(const Model& model) {
+  const PlainBalls plain(model);
+  if (plain.count() > 0) {
+    fmt::print("\nplain balls\n  {} of {} bodies meet each other as points with a radius\n",
+               plain.count(), model.size());
+    fmt::print("      because {}\n", PlainBalls::reason);
+  }
+}
+
 void explain(const SceneOptions& options) {
   const Model model(options.scene());
   const Scene& scene = model.scene();
@@ -108,6 +119,7 @@ void explain(const SceneOptions& options) {
     }
     fmt::print("  {}\n      because {}\n", decision.text, decision.reason);
   }
+  explain_plain_balls(model);
   explain_restitution(scene, model);
 }
 

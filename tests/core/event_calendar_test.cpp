@@ -21,7 +21,7 @@ class Beside : private EventCalendar::Source {
   void put(std::uint32_t body, Instant t, std::uint64_t key) {
     forget(body);
     put_[body] = {.time = t, .key = key, .key2 = body, .body = body, .stamp = 0};
-    calendar_.put(put_[body]);
+    calendar_.put(body, t, *this);
     if (t < Instant::never()) {
       of_[body] = {t.seconds, t.correction, key, body};
       bodies_[of_[body]] = body;

@@ -104,8 +104,52 @@ double EventAccumulation::rest_tolerance(BodyIndex a, BodyIndex b, double e) con
       std::min(smallest_extent(run_.model.shape(a)), smallest_extent(run_.model.shape(b)));
   const double coordinate = std::max(motions_.now(a).pose.position.cwiseAbs().maxCoeff(),
                                      motions_.now(b).pose.position.cwiseAbs().maxCoeff());
-  const bool dies_down = e < 1.0 || motions_.is_damped(a) || motions_.is_damped(b);
+  return rest_tolerance(extent, coordinate,
+                        e < 1.0 || motions_.is_damped(a) || motions_.is_damped(b));
+}
+
+double EventAccumulation::rest_tolerance(double extent, double coordinate, bool dies_down) {
   return (dies_down ? small_rest * extent : 0.0) + 4.0 * epsilon * coordinate;
+}
+
+EventAccumulation::Scale EventAccumulation::scale_of(const Rebound& of) const {
+  const double extent_a = 2.0 * of.ball_a.radius;
+  const double extent_b = 2.0 * of.ball_b.radius;
+  const double coordinate = std::max(of.event.after_a.pose.position.cwiseAbs().maxCoeff(),
+                                     of.event.after_b.pose.position.cwiseAbs().maxCoeff());
+  return {
+      rest_tolerance(std::min(extent_a, extent_b), coordinate, of.event.contact.restitution < 1.0),
+      motions_.flight(of.event.a).acceleration.norm() +
+          motions_.flight(of.event.b).acceleration.norm(),
+      small_way * extent_a, small_way * extent_b};
+}
+
+/// Twice the speed that `EventModes` takes for rest.
+bool EventAccumulation::part_for_sure(const Rebound& of) const {
+  const Scale scale = scale_of(of);
+  const double speeds =
+      of.event.after_a.twist.linear.lpNorm<1>() + of.event.after_b.twist.linear.lpNorm<1>();
+  const double parting = of.parting - 32.0 * epsilon * speeds;
+  return parting > 0.0 && parting * parting > 8.0 * scale.pressing * scale.tolerance;
+}
+
+bool EventAccumulation::go_on_for_sure(const Rebound& of) {
+  const auto [a, b] = std::pair{of.event.a, of.event.b};
+  const Scale scale = scale_of(of);
+  const bool rest = of.approach * of.approach <= 2.0 * scale.pressing * scale.tolerance;
+  const Instant t = of.event.time;
+  histories_[a].add({b, of.approach, scale.near_a, scale.tolerance, rest}, t);
+  histories_[b].add({a, of.approach, scale.near_b, scale.tolerance, rest}, t);
+  const auto goes_on = [](const ImpactHistory& history) {
+    return !history.rests() && !history.on_no_way() && !worth_a_look(history.chain());
+  };
+  return goes_on(histories_[a]) && goes_on(histories_[b]);
+}
+
+EventAccumulation::Finding EventAccumulation::after_impact(const Rebound& of) const {
+  const auto [a, b] = std::pair{of.event.a, of.event.b};
+  return conclude(a, b, scale_of(of).tolerance, histories_[a].rests() && histories_[b].rests(),
+                  of.event.time);
 }
 
 EventAccumulation::Finding EventAccumulation::after_impact(BodyIndex a, BodyIndex b,
@@ -122,6 +166,12 @@ EventAccumulation::Finding EventAccumulation::after_impact(BodyIndex a, BodyInde
     histories_[i].add({i == a ? b : a, approach, near, tolerance, rest}, t);
     resting = resting && histories_[i].rests();
   }
+  return conclude(a, b, tolerance, resting, t);
+}
+
+/// What the impacts of the two come to, the last of which is counted.
+EventAccumulation::Finding EventAccumulation::conclude(BodyIndex a, BodyIndex b, double tolerance,
+                                                       bool resting, Instant t) const {
   if (resting) {
     return {.kind = Finding::Kind::rests,
             .reason = fmt::format("accumulation: {} come to rest on each other: the hops "

@@ -59,7 +59,7 @@ void Agenda::file(BodyIndex i) {
   if (record.version != version_[i]) {
     record.meeting = Instant::never();
   }
-  calendar_.put(due(static_cast<std::uint32_t>(i)));
+  calendar_.put(static_cast<std::uint32_t>(i), std::min(record.crossing, record.meeting), *this);
 }
 
 EventCalendar::Entry Agenda::due(std::uint32_t body) const {
@@ -96,9 +96,10 @@ DueEvent Agenda::pop_record(const EventCalendar::Entry& first) {
 
 DueEvent Agenda::pop() {
   if (const EventCalendar::Entry* const first = calendar_.first(*this); first != nullptr) {
-    const auto key =
-        std::tuple(first->time.seconds, first->time.correction, first->key, first->key2);
-    if (heap_.empty() || key < heap_.front().full_key()) {
+    const auto key = [first] {
+      return std::tuple(first->time.seconds, first->time.correction, first->key, first->key2);
+    };
+    if (heap_.empty() || key() < heap_.front().full_key()) {
       return pop_record(*first);
     }
   }

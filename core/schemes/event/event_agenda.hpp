@@ -2,6 +2,7 @@
 
 #include "core/model.hpp"
 #include "core/periodic_box.hpp"
+#include "core/prefetch.hpp"
 #include "core/schemes/event/event_calendar.hpp"
 
 #include <algorithm>
@@ -66,6 +67,28 @@ class Agenda : private EventCalendar::Source {
   [[nodiscard]] DueEvent pop();
   /// Body i has a new motion: all that was predicted of it is stale. Recognised when it comes up.
   void renew(BodyIndex i) { ++version_[i]; }
+
+  /// Shows the bodies of what will come up soon, as far as the calendar tells: two at a time, which
+  /// may be the same.
+  template <typename See>
+  void see_soon(const See& see) const {
+    const std::span<const EventCalendar::Entry> today = calendar_.today();
+    for (std::size_t k = 1; k < std::min<std::size_t>(today.size(), 3); ++k) {
+      show(today[k], see);
+    }
+  }
+  /// The same of all that comes up on the day that has begun since this was last asked.
+  template <typename See>
+  void see_day(const See& see) {
+    if (calendar_.days_begun() != seen_day_) {
+      seen_day_ = calendar_.days_begun();
+      for (const EventCalendar::Entry& entry : calendar_.today()) {
+        show(entry, see);
+      }
+    }
+  }
+  /// What is known of body i is about to be asked for.
+  void look_up(BodyIndex i) const { prefetch(records_[i]); }
 
   /// Body i meets b then; kept if it is the earliest that is known of i.
   void meet(BodyIndex i, BodyIndex b, Instant t, double bracket);
@@ -137,6 +160,11 @@ class Agenda : private EventCalendar::Source {
   }
   /// What comes up first of its record, if nothing has changed since it was filed.
   [[nodiscard]] EventCalendar::Entry due(std::uint32_t body) const override;
+  template <typename See>
+  void show(const EventCalendar::Entry& entry, const See& see) const {
+    constexpr std::uint64_t of_rank = 0xffffffffU;
+    see(by_name_[entry.key & of_rank], by_name_[entry.key2]);
+  }
   [[nodiscard]] DueEvent pop_record(const EventCalendar::Entry& first);
 
   void sweep_out();
@@ -148,6 +176,7 @@ class Agenda : private EventCalendar::Source {
   std::vector<Entry> heap_;
   std::vector<Record> records_;
   EventCalendar calendar_;
+  std::uint64_t seen_day_ = 0;
   std::size_t crowded_ = least_crowded;  ///< size at which stale entries are swept out
 };
 

@@ -46,7 +46,7 @@ State EventMotions::last_drawn() && {
 /// `book` of a body on which nothing but the uniform force of the model acts, exactly; whether it
 /// was brought for that.
 bool EventMotions::book_plain(BodyIndex i, Instant t) {
-  Instant& until = booked_until_[run_.model.island_of(i)];
+  Instant& until = booked_until_[i];
   if (!(t - until > 0.0)) {
     return false;
   }

@@ -20,14 +20,17 @@ constexpr std::size_t most_entries = 6;
 }  // namespace
 
 bool EventCalendar::later(const Entry& x, const Entry& y) {
-  return std::tuple(x.time.seconds, x.time.correction, x.key, x.key2) >
-         std::tuple(y.time.seconds, y.time.correction, y.key, y.key2);
+  if (x.time.seconds != y.time.seconds) {
+    return x.time.seconds > y.time.seconds;
+  }
+  return std::tuple(x.time.correction, x.key, x.key2) >
+         std::tuple(y.time.correction, y.key, y.key2);
 }
 
-void EventCalendar::put(Entry entry) {
-  entry.stamp = ++latest_[entry.body];
-  if (entry.time < Instant::never()) {
-    file(entry);
+void EventCalendar::put(std::uint32_t body, Instant time, const Source& source) {
+  const Slip slip{body, ++latest_[body]};
+  if (time < Instant::never()) {
+    file(slip, time, source);
   }
 }
 
@@ -37,16 +40,16 @@ EventCalendar::Entry EventCalendar::entry_of(const Source& source, const Slip& s
   return entry;
 }
 
-void EventCalendar::file(const Entry& entry) {
-  const double day = (entry.time.seconds - origin_) * per_day_;
+void EventCalendar::file(const Slip& slip, Instant time, const Source& source) {
+  const double day = (time.seconds - origin_) * per_day_;
   const auto ahead = day - static_cast<double>(day_);
   if (per_day_ == 0.0 || !(ahead < static_cast<double>(days_.size()))) {
-    far_.push_back({entry.body, entry.stamp});
+    far_.push_back(slip);
   } else if (const auto number = static_cast<std::int64_t>(day); number <= day_) {
-    today_.push_back(entry);
+    today_.push_back(entry_of(source, slip));
     std::push_heap(today_.begin(), today_.end(), later);
   } else {
-    note(days_[static_cast<std::size_t>(number) & (days_.size() - 1)], {entry.body, entry.stamp});
+    note(days_[static_cast<std::size_t>(number) & (days_.size() - 1)], slip);
     ++filed_;
   }
 }
@@ -112,6 +115,7 @@ const EventCalendar::Entry* EventCalendar::first(const Source& source) {
 
 void EventCalendar::begin_next_day(const Source& source) {
   ++day_;
+  ++days_begun_;
   tear_off(days_[static_cast<std::size_t>(day_) & (days_.size() - 1)], [&](const Slip& slip) {
     if (current(slip)) {
       today_.push_back(entry_of(source, slip));
@@ -138,7 +142,7 @@ void EventCalendar::file_far(const Source& source) {
   again.swap(far_);
   for (const Slip& slip : again) {
     if (current(slip)) {
-      file(entry_of(source, slip));
+      file(slip, source.due(slip.body).time, source);
     }
   }
 }
@@ -181,7 +185,7 @@ void EventCalendar::renew(const Source& source) {
                 1e3 * std::numeric_limits<double>::epsilon() * std::abs(last), 1e-30});
   per_day_ = static_cast<double>(all.size() / 4 + 1) / (entries_a_day * span);
   for (const Entry& entry : all) {
-    file(entry);
+    file({entry.body, entry.stamp}, entry.time, source);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace kairos {
@@ -39,12 +40,16 @@ class EventCalendar {
 
   explicit EventCalendar(std::size_t bodies) : latest_(bodies, 0) {}
 
-  /// From now on body `entry.body` is due then; never: not at all.
-  void put(Entry entry);
+  /// From now on a body is due then, as the source tells it; never: not at all.
+  void put(std::uint32_t body, Instant time, const Source& source);
   /// It is not due any more.
   void drop(std::uint32_t body) { ++latest_[body]; }
   /// The earliest; null: nobody is due. Valid until the next `put`.
   [[nodiscard]] const Entry* first(const Source& source);
+  /// Who is due today, and some who were, the earliest first and the others in no order.
+  [[nodiscard]] std::span<const Entry> today() const { return today_; }
+  /// How many days have begun.
+  [[nodiscard]] std::uint64_t days_begun() const { return days_begun_; }
 
  private:
   /// An entry that is not today's: what it says is the latest of its body, if that has its stamp.
@@ -67,7 +72,7 @@ class EventCalendar {
     return entry.stamp == latest_[entry.body];
   }
   [[nodiscard]] Entry entry_of(const Source& source, const Slip& slip) const;
-  void file(const Entry& entry);
+  void file(const Slip& slip, Instant time, const Source& source);
   void note(std::uint32_t& day, const Slip& slip);
   template <typename See>
   void tear_off(std::uint32_t& day, const See& see);
@@ -83,10 +88,11 @@ class EventCalendar {
   std::vector<Slip> far_;      ///< beyond those days
   std::size_t filed_ = 0;      ///< in `days_`
   std::int64_t day_ = 0;       ///< today's number
-  std::int64_t check_ = 0;     ///< the day on which `far_` is looked through again
-  std::size_t taken_ = 0;      ///< entries that became today's since the last such day
-  double origin_ = 0.0;        ///< when day 0 began, s
-  double per_day_ = 0.0;       ///< 1 / length of a day, 1/s; 0: nothing is filed by days yet
+  std::uint64_t days_begun_ = 0;
+  std::int64_t check_ = 0;  ///< the day on which `far_` is looked through again
+  std::size_t taken_ = 0;   ///< entries that became today's since the last such day
+  double origin_ = 0.0;     ///< when day 0 began, s
+  double per_day_ = 0.0;    ///< 1 / length of a day, 1/s; 0: nothing is filed by days yet
 };
 
 }  // namespace core

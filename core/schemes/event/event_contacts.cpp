@@ -1,7 +1,9 @@
 #include "core/schemes/event/event_contacts.hpp"
 
 #include "core/archive.hpp"
+#include "core/ball_detector.hpp"
 #include "core/contacts/group_law.hpp"
+#include "core/point_law.hpp"
 #include "core/schemes/event/jump.hpp"
 
 #include <fmt/format.h>
@@ -26,9 +28,16 @@ EventContacts::EventContacts(EventRun& run, EventMotions& motions, EventPredicto
     : run_(run),
       motions_(motions),
       predictor_(predictor),
+      graph_(graph),
       group_law_(dynamic_cast<const GroupLaw*>(&run.law)),
       accumulation_(run, motions),
-      modes_(run, motions, predictor, accumulation_, graph, method.contact_stepper) {}
+      modes_(run, motions, predictor, accumulation_, graph, method.contact_stepper),
+      ball_detector_(dynamic_cast<const BallDetector*>(&run.detector)) {
+  if (!run.model.scene().periodic && !run.options.roundoff && run.law.info().needs_contact &&
+      (group_law_ == nullptr || !group_law_->takes_what_touches())) {
+    point_law_ = dynamic_cast<const PointLaw*>(&run.law);
+  }
+}
 
 // --- Groups ------------------------------------------------------------------------------------
 

@@ -14,7 +14,9 @@
 namespace kairos {
 inline namespace core {
 
+class BallDetector;
 class GroupLaw;
+class PointLaw;
 
 /// What happens when two bodies meet, come to rest on each other, part, or cross a field. Each of
 /// these launches who is concerned and predicts what they meet next.
@@ -43,6 +45,9 @@ class EventContacts {
   /// A driven surface has a new motion: the bodies on it follow or leave it.
   void carry_riders(BodyIndex surface, Instant t);
 
+  /// Body i is about to meet another.
+  void look_up(BodyIndex i) const { accumulation_.look_up(i); }
+
   void persist(Archive& archive);
 
  private:
@@ -53,8 +58,11 @@ class EventContacts {
     void persist(Archive& archive);
   };
 
+  [[nodiscard]] bool impact_of_balls(BodyIndex a, BodyIndex b, Instant t);
   bool meet_in_one_box(BodyIndex a, BodyIndex b, Instant t);
   void meet(Event& event, Instant t);
+  void go_on_struck(const Event& event, double approach, std::vector<BodyIndex> group, Instant t);
+  void go_on_as_found(const Event& event, const EventAccumulation::Finding& finding, Instant t);
   [[nodiscard]] bool meet_elsewhere(BodyIndex a, BodyIndex b, Instant t);
   void strike(Event& event);
   [[nodiscard]] const JointSystem* joints_of(BodyIndex i) const;
@@ -100,9 +108,13 @@ class EventContacts {
   EventRun& run_;
   EventMotions& motions_;
   EventPredictor& predictor_;
+  const ContactGraph& graph_;
   const GroupLaw* group_law_;  ///< the impact law, if it takes groups; else null
   EventAccumulation accumulation_;
   EventModes modes_;
+  /// Who is asked of two plain balls that meet, if that is up to them alone; else null.
+  const PointLaw* point_law_ = nullptr;
+  const BallDetector* ball_detector_;
   /// Balls that a face supports, or has: few of many.
   std::map<BodyIndex, Touching> touching_;
 };

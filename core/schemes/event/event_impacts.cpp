@@ -1,7 +1,9 @@
 // `EventContacts` when bodies strike each other: two of them, or a group in touch.
+#include "core/ball_detector.hpp"
 #include "core/contacts/centre_of_pressure.hpp"
 #include "core/contacts/group_law.hpp"
 #include "core/impact_check.hpp"
+#include "core/point_law.hpp"
 #include "core/schemes/event/event_contacts.hpp"
 #include "core/schemes/event/slides_past.hpp"
 
@@ -95,7 +97,61 @@ double EventContacts::passes_by(BodyIndex a, BodyIndex b, Instant t) const {
                      {run_.model.shape(b), of_b.motion()}, motions_.now(b), t);
 }
 
+/// `impact` of two plain balls that nothing else touches, without looking for what they have not:
+/// the same, bit by bit. False, and nothing has changed but that both are open, where more may have
+/// to be done.
+bool EventContacts::impact_of_balls(BodyIndex a, BodyIndex b, Instant t) {
+  if (point_law_ == nullptr || ball_detector_ == nullptr || !graph_.empty() ||
+      !motions_.is_plain(a) || !motions_.is_plain(b)) {
+    return false;
+  }
+  const PlainBall* const ball_a = run_.plain_balls.find(a);
+  const PlainBall* const ball_b = run_.plain_balls.find(b);
+  if (ball_a == nullptr || ball_b == nullptr) {
+    return false;
+  }
+  Event event{.time = t, .kind = EventKind::impact, .a = a, .b = b};
+  event.before_a = event.after_a = motions_.open_ball(a, *ball_a, t);
+  event.before_b = event.after_b = motions_.open_ball(b, *ball_b, t);
+  const Overlap o = ball_detector_->ball_overlap(event.before_a.pose.position, ball_a->radius,
+                                                 event.before_b.pose.position, ball_b->radius);
+  event.contact = {o.point, o.normal, o.gap, run_.plain_balls.restitution(*ball_a, *ball_b)};
+  const auto rate = [&o](const BodyState& of_a, const BodyState& of_b) {
+    return o.normal.dot(of_b.twist.linear - of_a.twist.linear);
+  };
+  const double approach = rate(event.before_a, event.before_b);
+  if (!(approach < 0.0) || o.gap > predictor_.least_touching_gap(*ball_a, *ball_b)) {
+    return false;
+  }
+  const ImpactEnergy energy =
+      point_law_->apply_to_points(event.contact, {ball_a->mass, event.after_a.twist.linear},
+                                  {ball_b->mass, event.after_b.twist.linear});
+  run_.struck(event, *ball_a, *ball_b);
+  run_.ledger.add(EnergyLine::restitution_loss, energy.restitution_loss);
+  const EventAccumulation::Rebound rebound{*ball_a, *ball_b, event, -approach,
+                                           rate(event.after_a, event.after_b)};
+  const bool parts = accumulation_.part_for_sure(rebound);
+  if (parts && accumulation_.go_on_for_sure(rebound)) {
+    motions_.launch_ball(a, *ball_a, event.after_a, t);
+    motions_.launch_ball(b, *ball_b, event.after_b, t);
+    predictor_.predict(a, t);
+    predictor_.predict(b, t, a);
+    return true;
+  }
+  motions_.now(a) = event.after_a;
+  motions_.now(b) = event.after_b;
+  if (parts) {
+    go_on_as_found(event, accumulation_.after_impact(rebound), t);
+  } else {
+    go_on_struck(event, approach, {}, t);
+  }
+  return true;
+}
+
 void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double bracket, bool decided) {
+  if (impact_of_balls(a, b, t)) {
+    return;
+  }
   motions_.open_pair(a, b, t);
   const bool moved = meet_in_one_box(a, b, t);
   if (run_.stopped()) {
@@ -142,6 +198,13 @@ void EventContacts::meet(Event& event, Instant t) {
     modes_.bring_group(group, t);
   }
   strike(event);
+  go_on_struck(event, approach, std::move(group), t);
+}
+
+/// The two have struck each other, which they met at this rate; `group`: those that they touch.
+void EventContacts::go_on_struck(const Event& event, double approach, std::vector<BodyIndex> group,
+                                 Instant t) {
+  const auto [a, b] = std::pair{event.a, event.b};
   if (still_approaching(event, approach, t)) {
     return;
   }
@@ -151,8 +214,15 @@ void EventContacts::meet(Event& event, Instant t) {
   if (lands(a, b, event.contact, t) || rest_on_joints(event, t)) {
     return;
   }
+  go_on_as_found(event, accumulation_.after_impact(a, b, std::max(-approach, 0.0), t), t);
+}
+
+/// They go on, or impacts like theirs have no end.
+void EventContacts::go_on_as_found(const Event& event, const EventAccumulation::Finding& finding,
+                                   Instant t) {
+  const auto [a, b] = std::pair{event.a, event.b};
+  const std::array<BodyIndex, 2> pair{a, b};
   using Kind = EventAccumulation::Finding::Kind;
-  const auto finding = accumulation_.after_impact(a, b, std::max(-approach, 0.0), t);
   if (finding.kind == Kind::none) {
     // Bodies that do not bounce go on in touch at once.
     const bool stays = modes_.stays(a, b, event.contact);

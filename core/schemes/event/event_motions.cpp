@@ -31,7 +31,7 @@ EventMotions::EventMotions(EventRun& run, const Method& method)
       ways_(run.model.size(), 0),
       flows_(run.model.islands().size()),
       shares_(run.model.islands().size(), 0),
-      booked_until_(run.model.islands().size()),
+      booked_until_(scattered<Instant>(run.model.size())),
       now_(scattered<BodyState>(run.model.size())) {
   const State initial = run.model.initial_state();
   std::copy(initial.begin(), initial.end(), now_.begin());
@@ -105,8 +105,8 @@ EventMotions::Flow& EventMotions::own_flow(BodyIndex i) {
     ways_[i] &= ~untied_bit;
     flows_[k] = make_flow(k);
     Flow& flow = *flows_[k];
-    flow.states[0] = flow.booked[0] = at(i, booked_until_[k]);
-    flow.stepper->start(flow.island, booked_until_[k], flow.states);
+    flow.states[0] = flow.booked[0] = at(i, booked_until(flow));
+    flow.stepper->start(flow.island, booked_until(flow), flow.states);
   }
   return *flows_[k];
 }
@@ -207,7 +207,7 @@ void EventMotions::open_pair(BodyIndex a, BodyIndex b, Instant t) {
 /// A step that was left out before a launch would give a wrong ledger or a wrong motion, and no
 /// error.
 void EventMotions::check_ready([[maybe_unused]] BodyIndex first, [[maybe_unused]] Instant t) const {
-  assert(!(booked_until_[run_.model.island_of(first)] < t));
+  assert(!(booked_until_[island(first).front()] < t));
   assert(std::all_of(island(first).begin(), island(first).end(),
                      [&](BodyIndex k) { return run_.jumps.is_brought(k, t); }));
 }
@@ -234,29 +234,61 @@ void EventMotions::launch(BodyIndex i, Instant t) {
 /// `launch` of a body of which its flight says all, without a motion in between; false where that
 /// is not enough.
 bool EventMotions::launch_plain(BodyIndex i, Instant t) {
-  if (run_.wants_motions) {
-    return false;
-  }
-  if (!table_.goes_on_as_parabola(i, now_[i])) {
-    return false;
-  }
-  const auto acceleration = falling_->fall(run_.model.gravity_force(i) + Vector3(Vector3::Zero()),
-                                           run_.model.inertia(i).mass);
-  if (!acceleration) {
+  if (run_.wants_motions || !table_.goes_on_as_parabola(i, now_[i])) {
     return false;
   }
   check_ready(i, t);
-  table_.keep_parabola(i, now_[i], *acceleration, t);
-  if ((ways_[i] & usual_bit) != 0 && !table_.is_usual(i)) {
-    ways_[i] &= ~usual_bit;
+  return fly_on(i, now_[i], run_.model.gravity_force(i), run_.model.inertia(i).mass, t);
+}
+
+/// A plain body goes on from `state`; false, and nothing has changed, where its stepper has to be
+/// asked for its motion.
+bool EventMotions::fly_on(BodyIndex i, const BodyState& state, const Vector3& weight, double mass,
+                          Instant t) {
+  const auto acceleration = falling_->fall(weight + Vector3(Vector3::Zero()), mass);
+  if (!acceleration) {
+    return false;
   }
-  booked_until_[run_.model.island_of(i)] = t;
+  const bool was_usual = (ways_[i] & usual_bit) != 0;
+  if (!was_usual || !table_.keep_usual(i, state, *acceleration, t)) {
+    table_.keep_parabola(i, state, *acceleration, t);
+    if (was_usual && !table_.is_usual(i)) {
+      ways_[i] &= ~usual_bit;
+    }
+  }
+  booked_until_[i] = t;
   ++run_.cost.steps;
   run_.agenda.renew(i);
   if constexpr (watches_jumps) {
     run_.jumps.launched(i);
   }
   return true;
+}
+
+BodyState EventMotions::open_ball(BodyIndex i, const PlainBall& ball, Instant t) {
+  const BodyState state = fallen(flight(i), t);
+  Instant& until = booked_until_[i];
+  if (t - until > 0.0) {
+    if (!ball.weight.isZero(0.0)) {
+      run_.account.fallen(ball, at(i, until), state);
+    }
+    until = t;
+  }
+  if constexpr (watches_jumps) {
+    bring(i, t);
+  }
+  return state;
+}
+
+void EventMotions::launch_ball(BodyIndex i, const PlainBall& ball, const BodyState& state,
+                               Instant t) {
+  if constexpr (watches_jumps) {
+    check_ready(i, t);
+  }
+  if (run_.wants_motions || !fly_on(i, state, ball.weight, ball.mass, t)) {
+    now_[i] = state;
+    launch(i, t);
+  }
 }
 
 void EventMotions::put_onto_joints(BodyIndex i, Instant t) {
@@ -658,7 +690,7 @@ void EventMotions::persist(Archive& archive) {
   for (std::size_t k = 0; k < flows_.size(); ++k) {
     const BodyIndex first = run_.model.islands()[k].bodies.front();
     bool own = flows_[k] != nullptr;
-    archive(own, booked_until_[k]);
+    archive(own, booked_until_[first]);
     archive.require(own || shares_[k] != 0);
     if (!own) {
       continue;

@@ -63,6 +63,11 @@ class EventMotions {
   }
   /// That is about to be asked for.
   void look_up(BodyIndex i) const { table_.look_up(i); }
+  /// It is about to be opened and launched.
+  void look_up_all(BodyIndex i) const {
+    table_.look_up(i);
+    prefetch(booked_until_[i]);
+  }
   [[nodiscard]] BodyState at(BodyIndex i, Instant t) const {
     return flies_parabola(i) ? fallen(flight(i), t) : table_.at(i, t);
   }
@@ -78,6 +83,10 @@ class EventMotions {
   void open(BodyIndex i, Instant t);
   /// Of two that meet: the ledger follows their islands, and both are brought.
   void open_pair(BodyIndex a, BodyIndex b, Instant t);
+  /// `open` of a ball that `is_plain`, to where it is, which it gives.
+  [[nodiscard]] BodyState open_ball(BodyIndex i, const PlainBall& ball, Instant t);
+  /// `launch` of it from such a state.
+  void launch_ball(BodyIndex i, const PlainBall& ball, const BodyState& state, Instant t);
   /// Every body of the island of i but i itself.
   void bring_others(BodyIndex i, Instant t);
   [[nodiscard]] const std::vector<BodyIndex>& island(BodyIndex i) const {
@@ -236,6 +245,8 @@ class EventMotions {
   }
   bool book_plain(BodyIndex i, Instant t);
   [[nodiscard]] bool launch_plain(BodyIndex i, Instant t);
+  [[nodiscard]] bool fly_on(BodyIndex i, const BodyState& state, const Vector3& weight, double mass,
+                            Instant t);
   void next_segment(Flow& flow, Instant t);
   void drive(BodyIndex i, Instant t);
   void set_motion(BodyIndex i, const Motion& motion);
@@ -262,8 +273,9 @@ class EventMotions {
   Flow& own_flow(BodyIndex i);
   /// The one that its next launch takes: what nothing ties shares one.
   Flow& flow_to_launch(BodyIndex i);
-  [[nodiscard]] Instant& booked_until(const Flow& flow) { return booked_until_[flow.number]; }
-  [[nodiscard]] Instant booked_until(const Flow& flow) const { return booked_until_[flow.number]; }
+  [[nodiscard]] Instant& booked_until(const Flow& flow) {
+    return booked_until_[flow.island.bodies.front()];
+  }
   [[nodiscard]] const Ties& ties(BodyIndex i) const { return ties_[i] ? *ties_[i] : no_ties_; }
   [[nodiscard]] Ties& tie(BodyIndex i);
   void forget_surface_forces(BodyIndex i);
@@ -296,7 +308,7 @@ class EventMotions {
   std::unique_ptr<Flow>
       shared_;  ///< of one body that falls freely, whichever it is now; null: none
   MemorylessStepper* falling_ = nullptr;  ///< its stepper
-  std::vector<Instant> booked_until_;     ///< by island: how far the ledger has followed it
+  std::vector<Instant> booked_until_;     ///< by first body of an island, as far as the ledger has
   std::int64_t evaluations_ = 0;          ///< of flows that are no more
   State now_;
   std::vector<BodyIndex> led_;  ///< bodies that are not free

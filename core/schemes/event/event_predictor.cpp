@@ -1,6 +1,7 @@
 #include "core/schemes/event/event_predictor.hpp"
 
 #include "core/archive.hpp"
+#include "core/ball_detector.hpp"
 
 #include <fmt/format.h>
 
@@ -15,12 +16,18 @@ inline namespace core {
 
 EventPredictor::EventPredictor(EventRun& run, const EventMotions& motions, const Grasps& grasps,
                                const ContactGraph& graph, const Method& method)
-    : run_(run), motions_(motions), grasps_(grasps), graph_(graph), since_(run.model.size()) {
+    : run_(run),
+      motions_(motions),
+      grasps_(grasps),
+      graph_(graph),
+      since_(run.model.size()),
+      ball_detector_(dynamic_cast<const BallDetector*>(&run.detector)) {
   const Scene& scene = run.model.scene();
   bounds_hold_ = run.detector.info().proves && run.options.toi_tolerance == 0.0;
   only_motions_ = scene.joints.empty() && !scene.periodic && run.model.grips().empty();
   if (!run.model.asks_every_pair() || run.model.scene().periodic) {
     neighbourhood_ = method.neighbourhood(run.model, run.options.toi_tolerance);
+    looks_ahead_ = dynamic_cast<const LooksAhead*>(neighbourhood_.get());
     return;
   }
   partners_.resize(run.model.size());
@@ -190,27 +197,30 @@ void EventPredictor::survey(BodyIndex i, Instant known, BodyIndex except) {
 void EventPredictor::survey_usual(BodyIndex i, Instant known, BodyIndex except) {
   own_ = motions_.flight(i);
   beside_.begin_alike(own_);
-  usual_.clear();
+  if (usual_.size() < themselves_.size()) {
+    usual_.resize(themselves_.size());
+  }
+  std::size_t count = 0;
   for (const std::uint32_t j : themselves_) {
-    if (j == i || j == except) {
-      continue;
-    }
-    if (motions_.is_usual(j)) {
-      motions_.look_up(j);
-      usual_.push_back(j);
-    } else {
+    // Each is written, and some are written over: which ones, no processor would guess.
+    usual_[count] = j;
+    motions_.look_up(j);
+    const bool other = (j != i) & (j != except);
+    const bool is_usual = motions_.is_usual(j);
+    count += static_cast<std::size_t>(other & is_usual);
+    if (other & !is_usual) {
       neighbours_.push_back({j});
     }
   }
-  if (usual_.empty()) {
+  if (count == 0) {
     return;
   }
-  for (const std::uint32_t j : usual_) {
-    motions_.add_usual(j, beside_);
+  for (std::size_t k = 0; k < count; ++k) {
+    motions_.add_usual(usual_[k], beside_);
   }
   filter_beside();
   near_.clear();
-  for (std::size_t k = 0; k < usual_.size(); ++k) {
+  for (std::size_t k = 0; k < count; ++k) {
     if (clear_[k] < std::numeric_limits<double>::infinity()) {
       const Instant later = std::max(own_.start, motions_.start_of(usual_[k]));
       near_.push_back({{usual_[k]}, later + clear_[k], true});
@@ -481,6 +491,9 @@ TimeOfImpact EventPredictor::time_of_impact(const PairQuery& of, double duration
         return counted(*toi);
       }
     }
+    if (const auto toi = ball_meets_plane(of, window)) {
+      return counted(*toi);
+    }
     return counted(run_.detector.time_of_impact(motions_.moving(of.a), motions_.moving(of.b),
                                                 window, run_.options.toi_tolerance));
   }
@@ -489,6 +502,23 @@ TimeOfImpact EventPredictor::time_of_impact(const PairQuery& of, double duration
   return counted(run_.detector.time_of_impact({run_.model.shape(of.a), a},
                                               {run_.model.shape(of.b), b}, window,
                                               run_.options.toi_tolerance));
+}
+
+/// Of a ball that flies and a half-space that is fixed.
+std::optional<TimeOfImpact> EventPredictor::ball_meets_plane(const PairQuery& of,
+                                                             const Window& window) const {
+  if (ball_detector_ == nullptr) {
+    return std::nullopt;
+  }
+  for (const auto& [ball, wall] : {std::pair{of.a, of.b}, std::pair{of.b, of.a}}) {
+    const auto* const half_space = std::get_if<HalfSpace>(&run_.model.shape(wall));
+    if (half_space != nullptr && run_.model.mobility(wall) == Mobility::fixed &&
+        motions_.flies_parabola(ball)) {
+      return ball_detector_->ball_meets_plane(motions_.flight(ball), *half_space,
+                                              motions_.now(wall).pose, window);
+    }
+  }
+  return std::nullopt;
 }
 
 /// `touching_gap`, also where one of the two is seen as an image.
@@ -537,6 +567,11 @@ double EventPredictor::touching_gap(BodyIndex a, BodyIndex b) const {
   // half of epsilon.
   const double roundoff = 352.0 * std::numeric_limits<double>::epsilon() * (coordinates + radii);
   return 2.0 * ((asked > 0.0 ? asked : 1e-9 * extent) + roundoff + errors);
+}
+
+double EventPredictor::least_touching_gap(const PlainBall& a, const PlainBall& b) const {
+  const double asked = run_.options.toi_tolerance;
+  return 2.0 * (asked > 0.0 ? asked : 1e-9 * std::min(2.0 * a.radius, 2.0 * b.radius));
 }
 
 /// The answer is undecided and the two are far apart: the detector ran out of work. Skips the time

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "core/contacts/contact_graph.hpp"
+#include "core/looks_ahead.hpp"
+#include "core/prefetch.hpp"
 #include "core/schemes/event/event_motions.hpp"
 #include "core/schemes/shared/grasps.hpp"
 
@@ -11,6 +13,8 @@
 
 namespace kairos {
 inline namespace core {
+
+class BallDetector;
 
 /// When will pairs meet or part? Asks the detector about the motions that bodies have, no further
 /// than the end of the epoch, and puts the answers on the agenda.
@@ -53,6 +57,22 @@ class EventPredictor {
   /// tolerance, the roundoff of the coordinates that their motions reach, their error radii). No
   /// impact law acts across more.
   [[nodiscard]] double touching_gap(BodyIndex a, BodyIndex b) const;
+  /// That of two plain balls is no less, wherever they are, m.
+  [[nodiscard]] double least_touching_gap(const PlainBall& a, const PlainBall& b) const;
+
+  /// Body i is about to be predicted.
+  void look_up(BodyIndex i) const {
+    prefetch(since_[i]);
+    if (looks_ahead_ != nullptr) {
+      looks_ahead_->look_up(i);
+    }
+  }
+  /// And those near it will be asked about; it has been looked up.
+  void look_around(BodyIndex i) const {
+    if (looks_ahead_ != nullptr) {
+      looks_ahead_->look_around(i);
+    }
+  }
 
   void persist(Archive& archive);
 
@@ -103,6 +123,8 @@ class EventPredictor {
   void predict_meeting(const PairQuery& query);
   void take_answer(const PairQuery& query, const TimeOfImpact& toi);
   [[nodiscard]] TimeOfImpact time_of_impact(const PairQuery& of, double duration);
+  [[nodiscard]] std::optional<TimeOfImpact> ball_meets_plane(const PairQuery& of,
+                                                             const Window& window) const;
   [[nodiscard]] Motion motion_of(BodyIndex i, const PairQuery& of) const;
   [[nodiscard]] double allowed_gap(const PairQuery& of) const;
   [[nodiscard]] double coordinates_reached(BodyIndex i) const;
@@ -120,15 +142,17 @@ class EventPredictor {
   const Grasps& grasps_;
   const ContactGraph& graph_;
   std::unique_ptr<Neighbourhood> neighbourhood_;  ///< null: every partner is a neighbour
+  const LooksAhead* looks_ahead_ = nullptr;       ///< that, if it can be told; else null
   /// Without that, by body: what it can interact with.
   std::vector<std::vector<BodyIndex>> partners_;
-  std::vector<Instant> since_;  ///< by body: from when on its pairs are asked
+  std::vector<Instant> since_;         ///< by body: from when on its pairs are asked
+  const BallDetector* ball_detector_;  ///< the detector, if it is one; else null
   /// Nothing but their motions says when two plain balls meet.
   bool only_motions_ = false;
   bool bounds_hold_ = false;               ///< a detector tells no contact before there is one
   std::vector<std::uint32_t> themselves_;  ///< scratch, as what follows
   std::vector<Neighbour> neighbours_;
-  std::vector<std::uint32_t> usual_;
+  std::vector<std::uint32_t> usual_;  ///< as long as it has had to be
   std::vector<Neighbour> balls_;
   BallFlight own_;
   FlightsBeside beside_;  ///< that

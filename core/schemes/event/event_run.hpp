@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/plain_balls.hpp"
 #include "core/schemes/event/event_agenda.hpp"
 #include "core/schemes/event/jump_watch.hpp"
 #include "core/schemes/event/work_budget.hpp"
@@ -29,6 +30,7 @@ class EventRun : public SchemeRun {
  public:
   EventRun(const Model& of, const Method& method, const SchemeOptions& asked, Recorder& to)
       : SchemeRun(of, method, asked, to),
+        plain_balls(of),
         agenda(of),
         jumps(watches_jumps ? of.size() : 0),
         budget_(asked.max_events, of.size(), mean_frame),
@@ -67,6 +69,7 @@ class EventRun : public SchemeRun {
   /// Saves or restores what changes during a run.
   void persist(Archive& archive);
 
+  const PlainBalls plain_balls;
   Agenda agenda;
   JumpWatch jumps;  ///< of no body unless `watches_jumps`
 

@@ -8,6 +8,13 @@
 namespace kairos {
 inline namespace core {
 
+namespace {
+
+/// So many bodies are found fast enough when they are asked for.
+constexpr std::size_t most_in_cache = 16384;
+
+}  // namespace
+
 EventWorld::EventWorld(const Model& model, const Method& method, const SchemeOptions& options,
                        Recorder& recorder)
     : run_(model, method, options, recorder),
@@ -17,7 +24,8 @@ EventWorld::EventWorld(const Model& model, const Method& method, const SchemeOpt
       predictor_(run_, motions_, grasps_, graph_, method),
       contacts_(run_, motions_, predictor_, graph_, method),
       hands_(run_, motions_, predictor_, contacts_, grasps_),
-      clock_(run_.options) {
+      clock_(run_.options),
+      looks_ahead_(model.size() > most_in_cache) {
   if (model.scene().periodic) {
     run_.boxes_crossed.resize(model.size());
   }
@@ -40,6 +48,9 @@ bool EventWorld::begin() {
 
 void EventWorld::take() {
   const DueEvent event = run_.agenda.pop();
+  if (looks_ahead_) {
+    look_ahead();
+  }
   if constexpr (watches_jumps) {
     run_.jumps.begin();
   }
@@ -48,6 +59,24 @@ void EventWorld::take() {
   if (event.own && !stopped() && !run_.agenda.is_filed(event.owner)) {
     predictor_.renew(event.owner, event.time);  // its motion is the same
   }
+}
+
+/// What comes next is fetched while this event is taken. It changes nothing that is computed.
+void EventWorld::look_ahead() {
+  run_.agenda.see_day([this](BodyIndex a, BodyIndex b) {
+    for (const BodyIndex i : {a, b}) {
+      run_.agenda.look_up(i);
+      motions_.look_up_all(i);
+      predictor_.look_up(i);
+      contacts_.look_up(i);
+    }
+  });
+  run_.agenda.see_soon([this](BodyIndex a, BodyIndex b) {
+    predictor_.look_around(a);
+    if (b != a) {
+      predictor_.look_around(b);
+    }
+  });
 }
 
 void EventWorld::take(const DueEvent& event) {

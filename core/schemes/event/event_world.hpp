@@ -35,6 +35,7 @@ class EventWorld {
 
  private:
   void take(const DueEvent& event);
+  void look_ahead();
   void next_epoch(Instant t);
   void end_segment(BodyIndex i, Instant t);
   bool open_frame();
@@ -49,6 +50,7 @@ class EventWorld {
   EventHands hands_;
 
   FrameClock clock_;
+  const bool looks_ahead_;  ///< there are more bodies than the caches near the processor hold
 };
 
 }  // namespace core

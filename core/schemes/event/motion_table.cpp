@@ -60,8 +60,7 @@ void MotionTable::keep(BodyIndex i, const Motion& motion) {
 }
 
 bool MotionTable::goes_on_as_parabola(BodyIndex i, const BodyState& state) const {
-  return whole_.empty() && is_parabola(i) &&
-         same_bits(state.pose.orientation, Quaternion(1.0, 0.0, 0.0, 0.0));
+  return is_parabola(i) && same_bits(state.pose.orientation, Quaternion(1.0, 0.0, 0.0, 0.0));
 }
 
 void MotionTable::keep_parabola(BodyIndex i, const BodyState& state, const Vector3& acceleration,
@@ -70,6 +69,18 @@ void MotionTable::keep_parabola(BodyIndex i, const BodyState& state, const Vecto
   if (!same_bits(falls_[i].acceleration, acceleration)) {
     falls_[i].acceleration = acceleration;
   }
+  if (!whole_.empty()) {
+    make(i, whole_[i]);
+  }
+}
+
+bool MotionTable::keep_usual(BodyIndex i, const BodyState& state, const Vector3& acceleration,
+                             Instant t) {
+  if (!whole_.empty() || !same_bits(acceleration, usual_.acceleration)) {
+    return false;
+  }
+  throws_[i] = {state.pose.position, state.twist.linear, t};
+  return true;
 }
 
 bool MotionTable::is_usual(BodyIndex i) const {

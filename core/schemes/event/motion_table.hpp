@@ -2,6 +2,7 @@
 
 #include "core/contact_detector.hpp"
 #include "core/model.hpp"
+#include "core/prefetch.hpp"
 #include "core/schemes/event/stored_motion.hpp"
 
 #include <cstdint>
@@ -28,6 +29,9 @@ class MotionTable {
   [[nodiscard]] bool goes_on_as_parabola(BodyIndex i, const BodyState& state) const;
   /// It does so from now on.
   void keep_parabola(BodyIndex i, const BodyState& state, const Vector3& acceleration, Instant t);
+  /// The same of one that `is_usual` and is accelerated as before; false where it is not.
+  [[nodiscard]] bool keep_usual(BodyIndex i, const BodyState& state, const Vector3& acceleration,
+                                Instant t);
 
   [[nodiscard]] Motion of(BodyIndex i) const;
   [[nodiscard]] Instant start(BodyIndex i) const {
@@ -64,11 +68,7 @@ class MotionTable {
     beside.add_alike(throws_[i].position, throws_[i].velocity, throws_[i].start);
   }
   /// The flight of body i is about to be asked for.
-  void look_up([[maybe_unused]] BodyIndex i) const {
-#if defined(__GNUC__)
-    __builtin_prefetch(&throws_[i]);
-#endif
-  }
+  void look_up(BodyIndex i) const { prefetch(throws_[i]); }
 
   /// A shape with the motion that it has, for as long as this lives and no motion is kept.
   class Moving {
@@ -127,7 +127,8 @@ class MotionTable {
   void set_flight(BodyIndex i, const Motion& motion);
   [[nodiscard]] Form form_of(BodyIndex i, const Motion& motion) const;
   void store(BodyIndex i, const Motion& motion);
-  /// Body i has a motion of its own; `out` is as it is made.
+  /// The motion of body i, if it is a flight or kept among others; `out` is as it is made, or was
+  /// that of body i when it was told in the same way.
   void make(BodyIndex i, Motion& out) const;
 
   static constexpr std::uint32_t nowhere = ~std::uint32_t{0};

@@ -38,12 +38,18 @@ Vector3 spin_gains(const BodyInertia& inertia, const BodyState& from, const Body
 }
 
 /// Energy in those velocity components of a body that changed, after the change, J.
-double renewed(const BodyInertia& inertia, const BodyState& from, const BodyState& to) {
+double renewed(double mass, const BodyState& from, const BodyState& to) {
   double energy = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
     const double v = to.twist.linear[axis];
-    energy += v != from.twist.linear[axis] ? 0.5 * inertia.mass * v * v : 0.0;
+    energy += v != from.twist.linear[axis] ? 0.5 * mass * v * v : 0.0;
   }
+  return energy;
+}
+
+/// The same with its rotation.
+double renewed(const BodyInertia& inertia, const BodyState& from, const BodyState& to) {
+  double energy = renewed(inertia.mass, from, to);
   if (inertia.rotates && to.twist.angular != from.twist.angular) {
     energy += spin_energy(inertia, to);
   }
@@ -80,13 +86,17 @@ Vector3 field_force(const Model& model, BodyIndex field, const BodyState& field_
 EnergyAccount::EnergyAccount(const Model& model, EnergyLedger& ledger)
     : model_(model), ledger_(ledger) {}
 
-double EnergyAccount::exchanged(BodyIndex i, const BodyInertia& inertia, const BodyState& from,
-                                const BodyState& to) {
+double EnergyAccount::exchanged(const Vector3& weight, const BodyInertia& inertia,
+                                const BodyState& from, const BodyState& to) {
+  return exchanged(weight, from, to, renewed(inertia, from, to));
+}
+
+double EnergyAccount::exchanged(const Vector3& weight, const BodyState& from, const BodyState& to,
+                                double renewed) {
   const Vector3 displacement = to.pose.position - from.pose.position;
-  const Vector3& weight = model_.gravity_force(i);
   const double falls = weight.dot(displacement);
   ledger_.exchange(falls);
-  ledger_.exchange(renewed(inertia, from, to));
+  ledger_.exchange(renewed);
   for (int axis = 0; axis < 3; ++axis) {
     if (displacement[axis] != 0.0) {
       ledger_.exchange(weight[axis] * to.pose.position[axis]);
@@ -96,7 +106,11 @@ double EnergyAccount::exchanged(BodyIndex i, const BodyInertia& inertia, const B
 }
 
 void EnergyAccount::fallen(BodyIndex i, const BodyState& from, const BodyState& to) {
-  (void)exchanged(i, model_.inertia(i), from, to);
+  (void)exchanged(model_.gravity_force(i), model_.inertia(i), from, to);
+}
+
+void EnergyAccount::fallen(const PlainBall& ball, const BodyState& from, const BodyState& to) {
+  (void)exchanged(ball.weight, from, to, renewed(ball.mass, from, to));
 }
 
 double EnergyAccount::surplus(const Leg& leg) {
@@ -107,7 +121,7 @@ double EnergyAccount::surplus(const Leg& leg) {
     const BodyInertia& inertia = leg.island.inertia[k];
     const BodyState& from = leg.from[k];
     const BodyState& to = leg.to[k];
-    const double falls = exchanged(i, inertia, from, to);
+    const double falls = exchanged(model_.gravity_force(i), inertia, from, to);
     const double other = leg.other_force[k].dot(to.pose.position - from.pose.position);
     if (other != 0.0) {
       ledger_.add(EnergyLine::field_work, other);
@@ -243,6 +257,11 @@ void EnergyAccount::struck(BodyIndex i, const BodyState& before, const BodyState
   const BodyInertia& inertia = model_.inertia(i);
   ledger_.exchange(renewed(inertia, after, before));
   ledger_.exchange(renewed(inertia, before, after));
+}
+
+void EnergyAccount::struck(const PlainBall& ball, const BodyState& before, const BodyState& after) {
+  ledger_.exchange(renewed(ball.mass, after, before));
+  ledger_.exchange(renewed(ball.mass, before, after));
 }
 
 void EnergyAccount::moved(BodyIndex i, Instant t, const BodyState& from, const BodyState& to) {

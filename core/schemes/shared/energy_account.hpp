@@ -3,6 +3,7 @@
 #include "core/energy_ledger.hpp"
 #include "core/model.hpp"
 #include "core/motion.hpp"
+#include "core/plain_balls.hpp"
 #include "core/stepper.hpp"
 
 #include <span>
@@ -58,6 +59,7 @@ class EnergyAccount {
   /// The same of a body that does not turn and falls exactly, with nothing but the uniform force of
   /// the model on it.
   void fallen(BodyIndex i, const BodyState& from, const BodyState& to);
+  void fallen(const PlainBall& ball, const BodyState& from, const BodyState& to);
   /// The same with state-dependent forces, whose work is minus the change of their potential, or
   /// where they have none the integral of F dp along the motions (Gauss-Legendre, 8 points).
   /// `motions`: one per body of the island, covering [start, start + duration].
@@ -88,6 +90,8 @@ class EnergyAccount {
   /// or out of it, or handed on is neither gain nor loss, but counts as flow.
   void struck(BodyIndex i, const BodyState& before, const BodyState& after);
 
+  void struck(const PlainBall& ball, const BodyState& before, const BodyState& after);
+
   /// Kinetic energy that body i gained from one velocity to another at the same place, J.
   [[nodiscard]] double gained(BodyIndex i, const BodyState& from, const BodyState& to) const;
 
@@ -100,8 +104,10 @@ class EnergyAccount {
 
  private:
   /// Counts what gravity and the new velocities changed into each other; returns the work, J.
-  double exchanged(BodyIndex i, const BodyInertia& inertia, const BodyState& from,
+  double exchanged(const Vector3& weight, const BodyInertia& inertia, const BodyState& from,
                    const BodyState& to);
+  double exchanged(const Vector3& weight, const BodyState& from, const BodyState& to,
+                   double renewed);
   /// Kinetic energy gained minus work of gravity and `other_force`, J; books the latter.
   double surplus(const Leg& leg);
   /// What the forces do to the bodies on their motions at t, into `wrenches_` and `along_`.

@@ -53,6 +53,13 @@ ImpactEnergy SchemeRun::exchange(Event& event, BodyState& a, BodyState& b, Vecto
   return energy;
 }
 
+void SchemeRun::struck(const Event& event, const PlainBall& a, const PlainBall& b) {
+  account.struck(a, event.before_a, event.after_a);
+  account.struck(b, event.before_b, event.after_b);
+  ++cost.impacts;
+  note(event);
+}
+
 BodyInertia SchemeRun::flat_inertia(BodyIndex i) const {
   BodyInertia inertia = model.inertia(i);
   inertia.rotates = inertia.rotates && std::holds_alternative<Sphere>(model.shape(i));
