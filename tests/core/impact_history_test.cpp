@@ -31,6 +31,30 @@ TEST_CASE("impacts: two that hardly move against each other creep after 200", "[
   }
 }
 
+TEST_CASE("impacts: those that creep add up, whatever short ways come between them", "[impacts]") {
+  ImpactHistory history;
+  Instant t;
+  const auto add = [&](double pause) {
+    t = t + pause;
+    history.add(with(1, 1e-6), t);
+  };
+  add(0.0);
+  for (int round = 0; round < 50; ++round) {
+    for (int k = 0; k < 100; ++k) {
+      add(1e-3);
+    }
+    CHECK_FALSE(history.creeps_on());
+    add(0.1);  // 1e-7 m: more than none, and near
+  }
+  CHECK_FALSE(history.creeps());
+  add(1e-3);
+  CHECK(history.creeps_on());
+  SECTION("until one goes so far that it hangs together with none of them") {
+    add(1e4);
+    CHECK_FALSE(history.creeps_on());
+  }
+}
+
 TEST_CASE("impacts: those on short ways hang together, with their partners", "[impacts]") {
   ImpactHistory history;
   Instant t;

@@ -172,12 +172,16 @@ EventAccumulation::Finding EventAccumulation::after_impact(BodyIndex a, BodyInde
 /// What the impacts of the two come to, the last of which is counted.
 EventAccumulation::Finding EventAccumulation::conclude(BodyIndex a, BodyIndex b, double tolerance,
                                                        bool resting, Instant t) const {
+  const auto creeps_on = [&](BodyIndex i) {
+    return run_.model.is_free(i) && histories_[i].creeps_on();
+  };
   if (resting) {
     return {.kind = Finding::Kind::rests,
             .reason = fmt::format("accumulation: {} come to rest on each other: the hops "
                                   "that are left are below {:.2g} m",
                                   run_.names(a, b), tolerance),
-            .bodies = {a, b}};
+            .bodies = {a, b},
+            .endless = creeps_on(a) || creeps_on(b)};
   }
   for (const BodyIndex i : {a, b}) {
     if (!run_.model.is_free(i)) {

@@ -38,6 +38,7 @@ class EventAccumulation {
     std::vector<BodyIndex> bodies;  ///< who takes part
     std::size_t pairs = 0;          ///< how many of them collapse
     bool goes_on = false;           ///< the impacts may go on for now
+    bool endless = false;           ///< they did so for long, and got nowhere
   };
   /// An impact that met at `approach`, m/s, left the two at `now`.
   [[nodiscard]] Finding after_impact(BodyIndex a, BodyIndex b, double approach, Instant t);

@@ -237,7 +237,8 @@ void EventContacts::go_on_as_found(const Event& event, const EventAccumulation::
                 .unite = unite,
                 .remaining = finding.remaining,
                 .pairs = finding.pairs,
-                .may_turn = finding.kind != Kind::collapse})) {
+                .may_turn = finding.kind != Kind::collapse,
+                .may_part = !finding.endless})) {
       return;
     }
     if (finding.goes_on) {
@@ -684,7 +685,8 @@ void EventContacts::go_on_from(std::span<const BodyIndex> bodies, const BodyPair
               .unite = unite,
               .remaining = finding.remaining,
               .pairs = finding.pairs,
-              .may_turn = finding.kind != Kind::none && finding.kind != Kind::collapse})) {
+              .may_turn = finding.kind != Kind::none && finding.kind != Kind::collapse,
+              .may_part = !finding.endless})) {
     return;
   }
   set_free(bodies, t);

@@ -46,6 +46,7 @@ class EventModes {
     std::span<const BodyPair> apart = {};  ///< unite: what parts, however slowly
     /// What cannot go on otherwise may turn: the run would stop. What has turned may always.
     bool may_turn = false;
+    bool may_part = true;  ///< may_turn: what nothing presses goes on by itself
   };
   /// Settles all that touches the seeds at t, whose states are at `now`; false, and nothing has
   /// changed, where they cannot go on in touch. `why_not` then says why.

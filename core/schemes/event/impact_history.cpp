@@ -11,6 +11,7 @@ void ImpactHistory::add(const Impact& impact, Instant t) {
   const double way = first ? 0.0 : (t - last_) * impact.approach;
   if (first || way > impact.near) {
     chain_ = 0;
+    crept_ = 0;
     if (rare_ != nullptr) {
       rare_->partners.clear();
     }
@@ -25,7 +26,9 @@ void ImpactHistory::add(const Impact& impact, Instant t) {
     }
   }
   ++chain_;
-  creeping_ = first || way > impact.tolerance ? 0 : creeping_ + 1;
+  const bool creeps = !first && way <= impact.tolerance;
+  creeping_ = creeps ? creeping_ + 1 : 0;
+  crept_ += creeps ? 1 : 0;
   const bool again = !first && impact.partner == last_partner_;
   resting_ = impact.rest ? (again ? resting_ + 1 : 1) : 0;
   last_ = t;
@@ -56,7 +59,7 @@ ImpactHistory::Rare& ImpactHistory::rare() {
 
 void ImpactHistory::persist(Archive& archive) {
   bool more = rare_ != nullptr;
-  archive(last_, chain_, last_partner_, creeping_, resting_, more);
+  archive(last_, chain_, last_partner_, creeping_, crept_, resting_, more);
   if (more) {
     Rare& of = rare();
     archive(of.partners, of.stalled, of.stalling);

@@ -34,9 +34,10 @@ class ImpactHistory {
   /// True where more than 200 in a row followed each other on no way at all. A cradle or the break
   /// of a rack has a few.
   [[nodiscard]] bool creeps() const { return creeping_ > most_creeping; }
-  /// True where so many did that nothing is to be hoped for from more of them. What hands an impact
-  /// on among many bodies, or among light and heavy ones, takes some hundreds until it is slow.
-  [[nodiscard]] bool creeps_on() const { return creeping_ > 25 * most_creeping; }
+  /// True where so many of those that hang together did that nothing is to be hoped for from more
+  /// of them, whatever short way is between some. What hands an impact on among many bodies, or
+  /// among light and heavy ones, takes some hundreds until it is slow.
+  [[nodiscard]] bool creeps_on() const { return crept_ > 25 * most_creeping; }
   /// Whether the latest impact followed the one before on no way at all.
   [[nodiscard]] bool on_no_way() const { return creeping_ > 0; }
   /// True where one and the same body was met more than three times in a row without a hop worth
@@ -66,6 +67,7 @@ class ImpactHistory {
   std::int64_t chain_ = 0;
   std::uint32_t last_partner_ = 0;
   int creeping_ = 0;
+  int crept_ = 0;  ///< of the chain
   int resting_ = 0;
   std::unique_ptr<Rare> rare_;  ///< null: none of that
 };

@@ -89,6 +89,9 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
       std::any_of(forces.begin(), forces.end(), [](const Vector3& f) { return !f.isZero(0.0); });
   if (turning.mode.flies || !pressed) {
     why_not_ = "nothing presses";
+    if (!asked.may_part) {
+      return false;
+    }
     if (asked.may_turn && !asked.pressed) {
       return part_ways(found, turning, t, adopt);
     }
