@@ -1,6 +1,7 @@
 #include "core/contacts/turning_forces.hpp"
 
 #include "core/circular.hpp"
+#include "core/contacts/complementarity.hpp"
 #include "core/contacts/least_norm.hpp"
 #include "core/contacts/nonnegative_solve.hpp"
 
@@ -28,6 +29,9 @@ constexpr int rays_of_cone = 16;
 /// the greatest. It only proposes: what is accepted was verified.
 constexpr int most_sweeps = 2000;
 constexpr double settled = 1e-10;
+
+/// What parts by more than this part of the largest load does: less is roundoff of the solve.
+constexpr double opens = 1e-10;
 
 /// Forces that are off by this part of the largest load are what was asked for, as they are where
 /// a mode is found: what ends one is several times as much.
@@ -148,7 +152,11 @@ TurningForces::Solution TurningForces::solve(std::span<const FrictionChoice> cho
     const double mu = state_.touches[k].friction;
     const bool leans = rubs(choices[k]) && mu > 0.0 && !choices[k].direction.isZero(0.0);
     asks.push_back(lines_[k][0]);
-    gives.push_back(leans ? line(k, now_[k].normal - mu * choices[k].direction) : lines_[k][0]);
+    // What stands for infinite friction is solved for as a force, and not as the normal force that
+    // it takes: the equations would be as far apart as the two are.
+    const double unit = state_.touches[k].rough ? 1.0 / hypotenuse(1.0, mu) : 1.0;
+    gives.push_back(leans ? line(k, unit * (now_[k].normal - mu * choices[k].direction))
+                          : lines_[k][0]);
     if (choices[k].does == Does::sticks) {
       for (const std::size_t axis : {1U, 2U}) {
         asks.push_back(lines_[k][axis]);
@@ -205,7 +213,10 @@ double TurningForces::cone_violation(std::span<const FrictionChoice> choices,
     const double normal = n.dot(found.force[k]);
     double beyond = -normal;
     if (choices[k].does == Does::sticks && std::isfinite(mu)) {
-      beyond = std::max(beyond, (found.force[k] - normal * n).norm() - mu * normal);
+      const double along = (found.force[k] - normal * n).norm();
+      // Infinite friction times the roundoff of the normal force is no roundoff.
+      beyond =
+          std::max(beyond, state_.touches[k].rough ? along / mu - normal : along - mu * normal);
     }
     worst = std::max(worst, beyond * weight_[k] / load_);
   }
@@ -434,6 +445,68 @@ std::vector<FrictionChoice> TurningForces::propose(std::span<const FrictionChoic
     }
   }
   return choices;
+}
+
+std::vector<FrictionChoice> TurningForces::complementary(std::span<const FrictionChoice> as_is) {
+  const std::size_t n = as_is.size();
+  std::vector<char> presses(n, 1);
+  for (std::size_t round = 0; round <= n; ++round) {
+    // Normals first, then the tangents of what is pressed and sticks.
+    std::vector<Line> lines;
+    for (std::size_t k = 0; k < n; ++k) {
+      lines.push_back(lines_[k][0]);
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+      for (const std::size_t axis : {1U, 2U}) {
+        if (presses[k] != 0 && as_is[k].does == Does::sticks) {
+          lines.push_back(lines_[k][axis]);
+        }
+      }
+    }
+    const auto rows = static_cast<Index>(n);
+    const auto all = static_cast<Index>(lines.size());
+    MatrixXd K(all, all);
+    VectorXd q(all);
+    for (Index r = 0; r < all; ++r) {
+      const Line& row = lines[static_cast<std::size_t>(r)];
+      for (Index c = 0; c < all; ++c) {
+        K(r, c) = coupling(row, lines[static_cast<std::size_t>(c)]);
+      }
+      q[r] = r < rows ? gap_acceleration(row.touch, state_.loads)
+                      : row.direction.dot(acceleration(row.touch, state_.loads));
+    }
+    ++solves_;
+    const Index tangents = all - rows;
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> held;
+    if (tangents > 0) {
+      held.setThreshold(rank_threshold);
+      held.compute(K.bottomRightCorner(tangents, tangents));
+      const MatrixXd of_normals = held.solve(K.bottomLeftCorner(tangents, rows));
+      const VectorXd of_loads = held.solve(q.tail(tangents));
+      q.head(rows) -= K.topRightCorner(rows, tangents) * of_loads;
+      K.topLeftCorner(rows, rows) -= K.topRightCorner(rows, tangents) * of_normals;
+    }
+    const MatrixXd W =
+        0.5 * (K.topLeftCorner(rows, rows) + K.topLeftCorner(rows, rows).transpose());
+    const Complementarity found = solve_complementarity(W, q.head(rows));
+    if (!found.solved) {
+      return {};
+    }
+    const VectorXd parts = W * found.x + q.head(rows);
+    std::vector<FrictionChoice> choices(as_is.begin(), as_is.end());
+    bool changed = false;
+    for (std::size_t k = 0; k < n; ++k) {
+      if (parts[static_cast<Index>(k)] > opens * load_) {
+        choices[k].does = Does::opens;
+        changed = changed || presses[k] != 0;
+        presses[k] = 0;
+      }
+    }
+    if (!changed || tangents == 0) {
+      return choices;
+    }
+  }
+  return {};
 }
 
 }  // namespace core

@@ -67,6 +67,12 @@ class TurningForces {
   /// What projected Gauss-Seidel finds likely, from what is known to slide or to stick.
   [[nodiscard]] std::vector<FrictionChoice> propose(std::span<const FrictionChoice> as_it_moves);
 
+  /// What follows where normal forces press and hold, or do not and let go: one complementarity
+  /// problem, in which what is pressed and sticks does so whatever that takes, and what slides does
+  /// so without friction. Exact with none, and with infinite friction of what sticks; empty where
+  /// it has no answer.
+  [[nodiscard]] std::vector<FrictionChoice> complementary(std::span<const FrictionChoice> as_is);
+
   /// Acceleration of b along a at touch k, of the gap, and of the surfaces, m/s^2.
   [[nodiscard]] double gap_acceleration(std::size_t k, std::span<const Twist> accelerations) const;
   [[nodiscard]] Vector3 acceleration(std::size_t k, std::span<const Twist> accelerations) const;

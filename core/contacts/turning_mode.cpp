@@ -66,6 +66,22 @@ class Search {
     for (std::size_t k = 0; k < state_.touches.size(); ++k) {
       as_is.push_back(as_it_moves(k));
     }
+    if (search(as_is)) {
+      return true;
+    }
+    // What slides no faster than hops that are taken for rest may all stick, or begin to slide.
+    std::vector<Choice> at_rest = as_is;
+    bool other = false;
+    for (std::size_t k = 0; k < at_rest.size(); ++k) {
+      if (at_rest[k].does == Does::slides && may_stick(k)) {
+        at_rest[k] = {Does::sticks, Vector3::Zero()};
+        other = true;
+      }
+    }
+    return other && search(at_rest);
+  }
+
+  bool search(const std::vector<Choice>& as_is) {
     if (attempt(as_is)) {
       return true;
     }
@@ -73,6 +89,11 @@ class Search {
     if (attempt(likely)) {
       return true;
     }
+    if (const std::vector<Choice> pressed = forces_.complementary(as_is);
+        !pressed.empty() && attempt(pressed)) {
+      return true;
+    }
+    most_ = forces_.solves() + most_solves;
     for (const std::size_t changes : {1U, 2U}) {
       for (const bool from_likely : {true, false}) {
         std::vector<Choice> choices = from_likely ? likely : as_is;
@@ -82,6 +103,10 @@ class Search {
       }
     }
     return false;
+  }
+
+  [[nodiscard]] bool may_stick(std::size_t k) const {
+    return state_.touches[k].friction > 0.0 && slip(k).norm() <= state_.touches[k].rest_speed;
   }
 
   /// With so many changes among the touches from `k` on.
@@ -94,16 +119,14 @@ class Search {
       const Choice before = choices[k];
       for (const Does does : {Does::opens, Does::sticks, Does::begins, Does::slides}) {
         const bool at_rest = as_is[k].does == Does::sticks;
-        const bool may_stick =
-            state_.touches[k].friction > 0.0 && slip(k).norm() <= state_.touches[k].rest_speed;
         const bool possible = does == Does::opens || (does == Does::slides   ? !at_rest
-                                                      : does == Does::sticks ? may_stick
+                                                      : does == Does::sticks ? may_stick(k)
                                                                              : at_rest);
         if (!possible || does == before.does) {
           continue;
         }
         choices[k] = {does, does == Does::slides ? as_is[k].direction : Vector3(Vector3::Zero())};
-        if (forces_.solves() > most_solves) {
+        if (forces_.solves() > most_) {
           return false;
         }
         if (change(choices, as_is, k + 1, changes - 1)) {
@@ -258,6 +281,7 @@ class Search {
   const TurningState& state_;
   TurningForces forces_;
   double still_;
+  int most_ = 0;  ///< solves
   TurningMode mode_;
 };
 

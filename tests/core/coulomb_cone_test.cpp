@@ -1,6 +1,6 @@
 // One contact with friction, against the conditions that define its solution.
 
-#include "core/schemes/stepping/coulomb_cone.hpp"
+#include "core/contacts/coulomb_cone.hpp"
 
 #include "core/random.hpp"
 #include "tests/catch.hpp"

@@ -284,7 +284,11 @@ void EventModes::commit(const Gathered& found, const FlatMode& mode, Instant t, 
   if (dissipated != 0.0) {
     const bool hopped = mode.slip.empty() || std::any_of(mode.rate.begin(), mode.rate.end(),
                                                          [](double rate) { return rate > 0.0; });
-    run_.ledger.add(hopped ? EnergyLine::zeno_completion : EnergyLine::projection, dissipated);
+    const bool jammed = turning != nullptr && !turning->jammed.empty();
+    run_.ledger.add(jammed   ? EnergyLine::impact_friction
+                    : hopped ? EnergyLine::zeno_completion
+                             : EnergyLine::projection,
+                    dissipated);
   }
   std::vector<Change> changes = join_and_part(found, mode, t);
   for (std::size_t k = 0; k < found.bodies.size(); ++k) {

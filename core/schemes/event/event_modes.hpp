@@ -150,7 +150,7 @@ class EventModes {
   [[nodiscard]] static bool presses(const Gathered& found, const Turning& turning,
                                     const BodyPair& pair);
   [[nodiscard]] double next_step(const Gathered& found);
-  [[nodiscard]] bool creeps(const Gathered& found);
+  [[nodiscard]] int short_steps(const Gathered& found);
   [[nodiscard]] bool turned(std::span<const BodyIndex> bodies);
   [[nodiscard]] bool has_turned(std::span<const BodyIndex> bodies) const;
   [[nodiscard]] std::string why_not_turn(const Gathered& found, Instant t) const;
@@ -160,6 +160,9 @@ class EventModes {
                                Gathered& found, Turning& turning);
   void lift(Gathered& found, Turning& turning);
   void raise(Gathered& found, Turning& turning);
+  [[nodiscard]] static bool let_hop(Turning& turning, double roundoff);
+  void let_jam(const Gathered& found, Turning& turning, double still) const;
+  void tell_jam(const Gathered& found, const Turning& turning, Instant t);
   [[nodiscard]] bool has_room(std::span<const BodyState> before, const Gathered& found, Instant t);
   [[nodiscard]] bool part_ways(const Gathered& found, Turning& turning, Instant t,
                                const Adopt& adopt);

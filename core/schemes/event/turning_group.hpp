@@ -11,6 +11,7 @@ struct EventModes::Turning {
   TurningGroup group;
   TurningMode mode;
   TurningStep step;
+  std::vector<char> jammed;  ///< by touch: friction stopped it by an impulse; empty: none
 
   [[nodiscard]] EventMotions::Turn turn_of(std::size_t place) const {
     EventMotions::Turn turn{step.motions[place], step.states[place], step.worked[place]};

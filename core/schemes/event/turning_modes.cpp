@@ -1,4 +1,5 @@
 // What `EventModes` does with groups whose bodies turn while they touch.
+#include "core/contacts/jam.hpp"
 #include "core/schemes/event/gathered_group.hpp"
 #include "core/schemes/event/mode_guards.hpp"
 #include "core/schemes/event/turning_group.hpp"
@@ -23,6 +24,10 @@ constexpr double rough = 1e8;
 /// Steps that are shorter than this part of a frame, so many in a row, get nowhere.
 constexpr double short_step = 1e-4;
 constexpr int most_short_steps = 500;
+/// After so many of them, and for as many, slip that the loads make within one is none: its
+/// direction turns, and it stops, within what such a step cannot tell. What it then does is
+/// verified as ever.
+constexpr int few_short_steps = 50;
 /// A body that turns has so many steps in a frame at most.
 constexpr int most_steps = 1000;
 /// So many free bodies of a group may turn: forces of more are found too slowly.
@@ -77,9 +82,18 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
     const Twist& v = found.states[k].twist;
     fastest = std::max(fastest, v.linear.norm() + v.angular.norm() * found.group.radius[k]);
   }
+  const double instant = short_steps(found) / few_short_steps % 2 != 0
+                             ? std::max(found.group.instant, short_step * run_.mean_frame)
+                             : found.group.instant;
   const double still =
-      TurningForces(turning.group.start).load() * found.group.instant + 64.0 * epsilon * fastest;
+      TurningForces(turning.group.start).load() * instant + 64.0 * epsilon * fastest;
   turning.mode = turning_mode(turning.group.start, std::max(still, turning_rest(turning.group)));
+  if (!turning.mode.refusal.empty() && let_hop(turning, 64.0 * epsilon * fastest)) {
+    turning.mode = turning_mode(turning.group.start, std::max(still, turning_rest(turning.group)));
+  }
+  if (!turning.mode.refusal.empty()) {
+    let_jam(found, turning, still);
+  }
   why_not_ = turning.mode.refusal;
   if (!why_not_.empty()) {
     return false;
@@ -108,7 +122,7 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
     return false;
   }
   const double frame = run_.options.step > 0.0 ? run_.options.step : run_.mean_frame;
-  if (creeps(found)) {
+  if (short_steps(found) > most_short_steps) {
     why_not_ = "what begins to slide, or stops, turns its direction faster than steps can follow";
     return false;
   }
@@ -126,6 +140,7 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
   ++run_.cost.steps;
   run_.cost.right_hand_sides += turning.step.evaluations;
   carry_on(found, turning, t, adopt);
+  tell_jam(found, turning, t);
   return true;
 }
 
@@ -202,12 +217,14 @@ bool EventModes::turned(std::span<const BodyIndex> bodies) {
   });
 }
 
-/// Whether the steps of a group get nowhere.
-bool EventModes::creeps(const Gathered& found) {
-  return std::any_of(found.pairs.begin(), found.pairs.end(), [&](const BodyPair& pair) {
-    const Patch* const patch = graph_.find(pair.first, pair.second);
-    return patch != nullptr && patch->short_steps > most_short_steps;
-  });
+/// How many steps of a group in a row got nowhere.
+int EventModes::short_steps(const Gathered& found) {
+  int most = 0;
+  for (const auto& [a, b] : found.pairs) {
+    const Patch* const patch = graph_.find(a, b);
+    most = std::max(most, patch != nullptr ? patch->short_steps : 0);
+  }
+  return most;
 }
 
 /// How long the next step of a group may be, as its last ones tell, s.
@@ -317,6 +334,76 @@ void EventModes::lift(Gathered& found, Turning& turning) {
     return found.passes[touch.pair] != 0 ||
            std::abs(now.normal.dot(now.velocity)) > found.group.patches[touch.pair].rest_speed;
   });
+}
+
+/// What parts slower than a hop worth the name is taken for rest. Where that contradicts itself it
+/// hops: touches that part faster than `roundoff`, m/s, are none; false if there are none of these,
+/// or no others.
+bool EventModes::let_hop(Turning& turning, double roundoff) {
+  TurningGroup& group = turning.group;
+  std::vector<Touch> touches;
+  std::vector<std::vector<TouchRim>> rims;
+  for (std::size_t k = 0; k < group.start.touches.size(); ++k) {
+    const Touch& touch = group.start.touches[k];
+    const TouchNow now = look_at(touch, group.start.states[touch.a], group.start.states[touch.b]);
+    if (now.normal.dot(now.velocity) <= roundoff) {
+      touches.push_back(touch);
+      rims.push_back(group.rims[k]);
+    }
+  }
+  if (touches.empty() || touches.size() == group.start.touches.size()) {
+    return false;
+  }
+  group.start.touches = std::move(touches);
+  group.rims = std::move(rims);
+  return true;
+}
+
+/// Where friction jams what slides, an impulse stops it, and it goes on from there.
+void EventModes::let_jam(const Gathered& found, Turning& turning, double still) const {
+  auto stopped = jam(turning.group.start, still);
+  if (!stopped) {
+    return;
+  }
+  TurningState after = turning.group.start;
+  for (std::size_t k = 0; k < found.bodies.size(); ++k) {
+    after.states[k].twist = stopped->velocities[k];
+    after.loads[k] = load(found.bodies[k], after.states[k]);
+  }
+  TurningMode mode = turning_mode(after, std::max(still, turning_rest(turning.group)));
+  if (mode.refusal.empty()) {
+    turning.group.start = std::move(after);
+    turning.mode = std::move(mode);
+    if (stopped->tangential) {
+      turning.jammed = std::move(stopped->struck);
+    }
+  }
+}
+
+/// Records an impact of each pair that an impulse stopped.
+void EventModes::tell_jam(const Gathered& found, const Turning& turning, Instant t) {
+  std::vector<char> told(found.pairs.size(), 0);
+  for (std::size_t k = 0; k < turning.jammed.size(); ++k) {
+    const Touch& touch = turning.group.start.touches[k];
+    if (turning.jammed[k] == 0 || told[touch.pair] != 0) {
+      continue;
+    }
+    told[touch.pair] = 1;
+    const auto& [a, b] = found.pairs[touch.pair];
+    const std::size_t at_a = found.place(a);
+    const std::size_t at_b = found.place(b);
+    Event event{.time = t, .kind = EventKind::impact, .a = a, .b = b};
+    const TouchNow now = look_at(touch, found.states[touch.a], found.states[touch.b]);
+    event.contact = {0.5 * (now.point_a + now.point_b), now.normal, now.gap};
+    event.contact.restitution = run_.model.restitution(a, b);
+    event.contact.friction = run_.model.friction(a, b);
+    event.before_a = found.states[at_a];
+    event.before_b = found.states[at_b];
+    event.after_a = motions_.now(a);
+    event.after_b = motions_.now(b);
+    ++run_.cost.impacts;
+    run_.note(event);
+  }
 }
 
 void EventModes::raise(Gathered& found, Turning& turning) {

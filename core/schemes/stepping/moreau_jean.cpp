@@ -1,6 +1,6 @@
 #include "core/schemes/stepping/moreau_jean.hpp"
 
-#include "core/schemes/stepping/coulomb_cone.hpp"
+#include "core/contacts/coulomb_cone.hpp"
 #include "core/schemes/stepping/step_world.hpp"
 
 #include <algorithm>

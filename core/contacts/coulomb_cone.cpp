@@ -1,4 +1,4 @@
-#include "core/schemes/stepping/coulomb_cone.hpp"
+#include "core/contacts/coulomb_cone.hpp"
 
 #include "core/circular.hpp"
 

@@ -1,0 +1,144 @@
+#include "core/contacts/jam.hpp"
+
+#include "core/contacts/coulomb_cone.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr int most_sweeps = 20'000;
+/// Sweeps have settled that change velocities by less than this part of the fastest.
+constexpr double settled = 1e-14;
+
+class Jams {
+ public:
+  Jams(const TurningState& state, double still) : state_(state), still_(still) {
+    for (const BodyState& s : state.states) {
+      before_.push_back(s.twist);
+    }
+    for (std::size_t i = 0; i < state.bodies.size(); ++i) {
+      fastest_ = std::max(fastest_,
+                          before_[i].linear.norm() + before_[i].angular.norm() * state.radius[i]);
+    }
+    for (const Touch& touch : state.touches) {
+      now_.push_back(look_at(touch, state.states[touch.a], state.states[touch.b]));
+      const Vector3& n = now_.back().normal;
+      const Vector3 t = n.unitOrthogonal();
+      std::array<ContactRow, 3> rows;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Vector3 d = axis == 0 ? n : axis == 1 ? t : Vector3(n.cross(t));
+        rows[axis] = {touch.a, touch.b, d, now_.back().point_a - state.bodies[touch.a].position,
+                      now_.back().point_b - state.bodies[touch.b].position};
+      }
+      local_.push_back({state.bodies, {rows.begin(), rows.end()}});
+      coupling_.push_back(local_.back().coupling());
+    }
+  }
+
+  [[nodiscard]] std::optional<Jam> find() const {
+    bool approach = false;
+    bool jams = false;
+    for (std::size_t k = 0; k < now_.size(); ++k) {
+      approach = approach || now_[k].normal.dot(now_[k].velocity) < -roundoff();
+      jams = jams || presses_itself(k, false) || presses_itself(k, true);
+    }
+    std::optional<Jam> found;
+    if (approach) {
+      found = sweep(0.0);
+    }
+    if (!found && jams) {
+      found = sweep(roundoff());  // an impact at no speed is that at a vanishing one
+    }
+    if (found) {
+      found->tangential = !approach;
+    }
+    return found;
+  }
+
+ private:
+  [[nodiscard]] double roundoff() const { return 64.0 * epsilon * fastest_; }
+  [[nodiscard]] Vector3 slip(std::size_t k) const {
+    const TouchNow& now = now_[k];
+    return now.velocity - now.normal * now.normal.dot(now.velocity);
+  }
+  [[nodiscard]] double friction(std::size_t k) const {
+    return state_.touches[k].rough ? std::numeric_limits<double>::infinity()
+                                   : state_.touches[k].friction;
+  }
+
+  /// Whether what presses touch k together, with the friction of that, does not part it.
+  [[nodiscard]] bool presses_itself(std::size_t k, bool others_held) const {
+    const double mu = state_.touches[k].friction;
+    if (mu == 0.0 || !(slip(k).norm() > still_)) {
+      return false;
+    }
+    ContactSystem held{state_.bodies, {}};
+    for (std::size_t j = 0; j < state_.touches.size() && others_held; ++j) {
+      const bool sticks = state_.touches[j].friction > 0.0 && !(slip(j).norm() > still_);
+      for (std::size_t axis = 0; j != k && axis < (sticks ? 3U : 1U); ++axis) {
+        held.rows.push_back(local_[j].rows[axis]);
+      }
+    }
+    ContactRow push = local_[k].rows[0];
+    push.direction = now_[k].normal - mu * slip(k).normalized();
+    std::vector<Twist> v(state_.bodies.size());
+    ContactSystem{state_.bodies, {push}}.push(Eigen::VectorXd::Ones(1), v);
+    if (!held.rows.empty()) {
+      held.project(v);
+    }
+    return held.rate(local_[k].rows[0], v) <= 0.0;
+  }
+
+  /// Touch by touch, all others as they are. All approach by `more` than they do, m/s.
+  [[nodiscard]] std::optional<Jam> sweep(double more) const {
+    const std::size_t n = now_.size();
+    Jam found{before_, std::vector<char>(n, 0)};
+    std::vector<Vector3> impulse(n, Vector3::Zero());
+    for (int round = 0; round < most_sweeps; ++round) {
+      double changed = 0.0;
+      for (std::size_t k = 0; k < n; ++k) {
+        const Matrix3 W = coupling_[k];
+        Vector3 q = Vector3(local_[k].rates(found.velocities)) - W * impulse[k];
+        q.x() -= more;
+        const Vector3 now = coulomb_impulse(W, q, friction(k));
+        local_[k].push(now - impulse[k], found.velocities);
+        changed = std::max(changed, (W * (now - impulse[k])).norm());
+        impulse[k] = now;
+      }
+      if (!(changed <= settled * fastest_)) {
+        continue;
+      }
+      bool any = false;
+      for (std::size_t k = 0; k < n; ++k) {
+        found.struck[k] = impulse[k].isZero(0.0) ? 0 : 1;
+        any = any || (coupling_[k] * impulse[k]).norm() > 4.0 * roundoff();
+      }
+      return any ? std::optional(std::move(found)) : std::nullopt;
+    }
+    return std::nullopt;
+  }
+
+  const TurningState& state_;
+  double still_;
+  double fastest_ = 0.0;  ///< m/s
+  std::vector<Twist> before_;
+  std::vector<TouchNow> now_;
+  std::vector<ContactSystem> local_;  ///< by touch: along its normal and two tangents
+  std::vector<Matrix3> coupling_;
+};
+
+}  // namespace
+
+std::optional<Jam> jam(const TurningState& state, double still) {
+  return Jams(state, still).find();
+}
+
+}  // namespace core
+}  // namespace kairos
