@@ -29,6 +29,24 @@ std::string_view to_string(EventKind kind) {
   return "unknown";
 }
 
+bool changes_contact(EventKind kind) {
+  switch (kind) {
+    case EventKind::contact_begins:
+    case EventKind::contact_ends:
+    case EventKind::slip_begins:
+    case EventKind::stick_begins:
+    case EventKind::roll_begins:
+      return true;
+    case EventKind::impact:
+    case EventKind::field_entered:
+    case EventKind::field_left:
+    case EventKind::grasped:
+    case EventKind::released:
+      return false;
+  }
+  return false;
+}
+
 std::string_view to_string(Grade grade) {
   switch (grade) {
     case Grade::exact:

@@ -4,6 +4,7 @@
 #include "core/instant.hpp"
 #include "core/state.hpp"
 
+#include <limits>
 #include <string_view>
 
 namespace kairos {
@@ -25,7 +26,7 @@ enum class EventKind {
 /// The word for it in `events.csv`.
 [[nodiscard]] std::string_view to_string(EventKind kind);
 
-/// How well the end of a contact mode was located.
+/// How the time was located at which a contact mode begins or ends.
 enum class Grade {
   exact,     ///< a root of a polynomial, to roundoff
   enclosed,  ///< proven by intervals
@@ -34,11 +35,18 @@ enum class Grade {
 /// The word for it in `events.csv`.
 [[nodiscard]] std::string_view to_string(Grade grade);
 
+/// Whether an event of this kind tells how a body touches another from now on: it has a grade.
+[[nodiscard]] bool changes_contact(EventKind kind);
+
 /// Something that happened between two bodies.
 struct Event {
   Instant time;
   EventKind kind = EventKind::impact;
-  Grade grade = Grade::exact;  ///< of a mode that ends
+  Grade grade = Grade::exact;  ///< where `changes_contact(kind)`
+  /// s: it happens in [time, time + bracket]. Of an impact: what the detector tells, proven where
+  /// it proves. Of a contact that begins: until the last of the hops that are left, as the motion
+  /// tells when it is linearised. NaN: not known.
+  double bracket = std::numeric_limits<double>::quiet_NaN();
   BodyIndex a = 0;
   BodyIndex b = 0;
   Contact contact{};                ///< of an impact whose law needs it; otherwise zeros

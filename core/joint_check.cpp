@@ -98,7 +98,9 @@ class JointCheck {
     if (joint_.kind == JointKind::rod) {
       const double apart = (point_b - point_a).norm();
       need(std::abs(apart - joint_.length) <= assembly_tolerance * size, "length",
-           fmt::format("is {} m, and at t = 0 its points are {} m apart", joint_.length, apart));
+           fmt::format("is {} m, and at t = 0 its points are {} m apart; allowed: their "
+                       "distance, or no length",
+                       joint_.length, apart));
     }
     std::array<JointRow, most_joint_rows> rows;
     const std::size_t count = row_count(joint_.kind);

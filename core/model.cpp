@@ -190,7 +190,8 @@ void Model::choose_friction() {
              "the scene says so; 0 for a body of which nothing is said, and then for its pairs"},
             {"friction", "spinning friction is left out",
              "a contact resists sliding at its points, not turning about its normal: a ball that "
-             "pivots on one point does so for ever"}});
+             "pivots on one point does so for ever, and a face that spins is slowed at the corners "
+             "of its patch"}});
   }
 }
 

@@ -39,7 +39,8 @@ class PeriodicCheck {
     const Vector3& p = b.initial.pose.position;
     for (int k = 0; k < 3; ++k) {
       need(b, !repeats(k) || (p[k] >= box_.lowest[k] && p[k] <= box_.highest[k]), "position",
-           fmt::format("{} = {} m is not within the box", axis_names[k], p[k]));
+           fmt::format("{} = {} m is not within the box; allowed: {} to {}", axis_names[k], p[k],
+                       box_.lowest[k], box_.highest[k]));
     }
     const bool falls = b.entity->mobility() == Mobility::free && b.G != 0.0 &&
                        !b.entity->gravity_direction().isZero(0.0);

@@ -156,7 +156,8 @@ void check_scene(const Scene& scene) {
   for (const Body& body : scene.bodies) {
     BodyCheck(scene, body).run();
     if (!names.insert(body.name).second) {
-      throw InputError(scene.path, body.line, "body." + body.name + ".name", "is there twice");
+      throw InputError(scene.path, body.line, "body." + body.name + ".name",
+                       "is there twice; allowed: each name once");
     }
   }
   check_forces(scene);

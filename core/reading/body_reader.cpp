@@ -49,7 +49,7 @@ void read_normal(const TableReader& table, Body& body) {
     return;
   }
   if (!body.entity->stationary()) {
-    item->fail(fmt::format("a {} has no reflecting face; only walls and conveyors take a normal",
+    item->fail(fmt::format("a {} has no reflecting face; allowed: a normal for walls and conveyors",
                            body.entity->kind()));
   }
   const Vector3 normal = read_direction(*item, item->vector(limits::component));
@@ -93,7 +93,9 @@ void read_inertia(const TableReader& table, Body& body) {
   }
   const auto* mesh = std::get_if<Mesh>(&body.shape);
   if (!item && mesh != nullptr && !mesh->body->mesh.solid()) {
-    table.fail("inertia", "is missing; a surface that moves freely encloses no mass");
+    table.fail(
+        "inertia",
+        "is missing; allowed: 3 numbers > 0, as a surface that moves freely encloses no mass");
   }
   if (!item) {
     body.inertia = solid_inertia(body.shape, body.mass);
@@ -122,7 +124,7 @@ void read_free(const TableReader& table, Body& body) {
                            body.entity->kind()));
   }
   refuse(table, "drive",
-         fmt::format("a {} moves freely; only fixed and driven bodies take a drive",
+         fmt::format("a {} moves freely; allowed: a drive for fixed and driven bodies only",
                      body.entity->kind()));
   body.mass = table.need("mass", limits::mass.text()).number(limits::mass);
   read_inertia(table, body);
@@ -132,7 +134,8 @@ void read_free(const TableReader& table, Body& body) {
   if (const auto spin = table.find("angular_velocity")) {
     body.initial.twist.angular = spin->vector(limits::angular_velocity);
     if (!body.entity->rotates() && !body.initial.twist.angular.isZero(0.0)) {
-      spin->fail(fmt::format("a {} does not turn; use the entity \"body\"", body.entity->kind()));
+      spin->fail(fmt::format("a {} does not turn; allowed: [0, 0, 0], or the entity \"body\"",
+                             body.entity->kind()));
     }
   }
 }
@@ -141,13 +144,17 @@ void read_fixed_or_driven(const TableReader& table, Body& body, const EntityType
                           const std::string& directory) {
   for (const std::string_view key : {"velocity", "angular_velocity"}) {
     refuse(table, key,
-           fmt::format("a {} is not moved by forces; give it a drive", body.entity->kind()));
+           fmt::format("a {} is not moved by forces; allowed: a drive", body.entity->kind()));
   }
-  refuse(table, "inertia", fmt::format("nothing turns a {}", body.entity->kind()));
+  refuse(
+      table, "inertia",
+      fmt::format("nothing turns a {}; allowed: for bodies that move freely", body.entity->kind()));
   if (type.mobility == Mobility::driven) {
     body.mass = table.need("mass", limits::mass.text()).number(limits::mass);
   } else {
-    refuse(table, "mass", fmt::format("a {} has infinite mass", body.entity->kind()));
+    refuse(table, "mass",
+           fmt::format("a {} has infinite mass; allowed: for bodies that move freely",
+                       body.entity->kind()));
   }
   if (const auto drive = table.find("drive")) {
     body.drive = read_drive(*drive, body, directory);
@@ -162,11 +169,11 @@ void read_fixed_or_driven(const TableReader& table, Body& body, const EntityType
 void read_hand(const TableReader& table, Body& body) {
   if (!body.entity->is_hand()) {
     return refuse(table, "holds",
-                  fmt::format("a {} has no fist; only hands hold something", body.entity->kind()));
+                  fmt::format("a {} has no fist; allowed: for hands", body.entity->kind()));
   }
   body.holds = table.need("holds", "the name of the body that the closed fist holds").text();
   if (!body.drive->has_gestures()) {
-    table.fail("drive", "has no gestures; needed: a track with the column gesture");
+    table.fail("drive", "has no gestures; allowed: a track with the column gesture");
   }
 }
 

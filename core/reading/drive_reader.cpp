@@ -59,7 +59,7 @@ void read_rotation(const TableReader& table, const Body& body, Sinusoid::Options
   if (!axis) {
     for (const std::string_view key : rotation_keys) {
       if (table.has(key)) {
-        table.fail(key, "a rotation_axis is needed too");
+        table.fail(key, "turns about nothing; allowed: beside rotation_axis, a direction");
       }
     }
     return;
@@ -80,7 +80,10 @@ void read_rotation(const TableReader& table, const Body& body, Sinusoid::Options
 std::shared_ptr<const Drive> read_sinusoid(const TableReader& table, const Body& body) {
   for (const std::string_view key : track_keys) {
     if (table.has(key)) {
-      table.fail(key, "only a track takes this; frequency makes the drive a sinusoid");
+      table.fail(
+          key,
+          "is of a track, and frequency makes the drive a sinusoid; allowed: a track without "
+          "frequency, or a sinusoid without this");
     }
   }
   Sinusoid::Options options;

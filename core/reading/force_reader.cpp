@@ -84,7 +84,7 @@ std::vector<BodyIndex> read_bodies(const Reading& reading) {
     const Item element(array[k], fmt::format("{}[{}]", item->path(), k));
     const BodyIndex i = find_body(element, reading.scene);
     if (std::find(result.begin(), result.end(), i) != result.end()) {
-      element.fail(fmt::format("\"{}\" is named twice", element.text()));
+      element.fail(fmt::format("\"{}\" is named twice; allowed: each body once", element.text()));
     }
     result.push_back(i);
   }
@@ -119,7 +119,8 @@ std::vector<BodyIndex> each_body(const Reading& reading) {
     }
   }
   if (result.empty()) {
-    reading.table.fail("", "acts on nothing: no body of the scene moves freely");
+    reading.table.fail(
+        "", "acts on nothing: no body of the scene moves freely; allowed: with one that does");
   }
   return result;
 }

@@ -46,7 +46,8 @@ void read_sides(const Reading& reading) {
   if (array.size() == 2) {
     reading.joint.b.body = side(1);
     if (reading.joint.a.body == reading.joint.b.body) {
-      item.fail(fmt::format("\"{}\" is named twice", names[*reading.joint.a.body]));
+      item.fail(fmt::format("\"{}\" is named twice; allowed: two different bodies",
+                            names[*reading.joint.a.body]));
     }
   }
 }

@@ -48,7 +48,8 @@ void refuse_unknown_keys(const TableReader& table) {
 Body read_template(const Item& item, const TableReader& table, const BodyDefaults& defaults) {
   for (const std::string_view key : {"position", "drive", "holds", "normal"}) {
     if (table.has(key)) {
-      table.fail(key, "is of one body; many bodies lie in `region`, and nothing drives them");
+      table.fail(
+          key, "is of one body; allowed: a region for many bodies, which nothing drives or holds");
     }
   }
   Table one = *item.value().table();
@@ -112,9 +113,11 @@ std::vector<Vector3> place(const TableReader& table, const Region& region,
     const double radius = *std::max_element(radii.begin(), radii.end());
     std::vector<Vector3> sites = lattice_sites(region, radius, radii.size());
     if (sites.empty()) {
-      table.fail("region", fmt::format("has no room for {} bodies within {} m of their centres; "
-                                       "on a lattice it holds at most {}",
-                                       radii.size(), radius, most_on_lattice(region, radius)));
+      table.fail("region",
+                 fmt::format("has no room for {} bodies within {} m of their centres; "
+                             "allowed: at most {} on a lattice, smaller bodies, or a larger "
+                             "region",
+                             radii.size(), radius, most_on_lattice(region, radius)));
     }
     return sites;
   }
@@ -146,10 +149,11 @@ double read_deviation(const TableReader& table, const Body& body, std::string_vi
                       const Range& range) {
   const auto item = table.find(key);
   if (item && body.entity->mobility() != Mobility::free) {
-    item->fail(fmt::format("a {} does not move", body.entity->kind()));
+    item->fail(fmt::format("a {} does not move; allowed: a ball or a body", body.entity->kind()));
   }
   if (item && key == "angular_velocity_deviation" && !body.entity->rotates()) {
-    item->fail(fmt::format("a {} does not turn; use the entity \"body\"", body.entity->kind()));
+    item->fail(fmt::format("a {} does not turn; allowed: none, or the entity \"body\"",
+                           body.entity->kind()));
   }
   return item ? item->number(range) : 0.0;
 }

@@ -141,7 +141,7 @@ PeriodicBox read_periodic(const Item& item) {
       const Item axis(listed[i], fmt::format("{}[{}]", axes->path(), i));
       bool& along = box.along[axis.choice(names)];
       if (along) {
-        axis.fail("is there twice");
+        axis.fail("is there twice; allowed: each name once");
       }
       along = true;
     }

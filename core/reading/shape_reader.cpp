@@ -42,6 +42,15 @@ constexpr std::size_t most_points = 100'000;
 constexpr Range unit_range{.lowest = 0.0, .highest = 1e6, .above = true, .unit = "m"};
 constexpr Range rounding_range{.lowest = 0.0, .highest = 1e12, .unit = "m"};
 
+/// The keys of its size, for a message.
+std::string sizes(const ShapeKind& kind) {
+  std::string names;
+  for (const std::string_view key : kind.keys) {
+    names += key.empty() ? "" : (names.empty() ? "" : ", ") + std::string(key);
+  }
+  return names.empty() ? "none, it has no end" : names;
+}
+
 /// The kind of shape: what is said, or what the size that is given implies.
 const ShapeKind& shape_kind(const TableReader& table) {
   if (const auto item = table.find("shape")) {
@@ -92,7 +101,7 @@ Shape read_hull(const TableReader& table, const std::string& directory) {
                       : "is missing; needed: points, or file (.off, .obj or .stl)");
   }
   if (points && table.has("unit")) {
-    table.fail("unit", "is that of a file; points are in m");
+    table.fail("unit", "is that of a file; points are in m; allowed: unit beside file only");
   }
   const auto rounding = table.find("rounding");
   const Item& source = points ? *points : *file;
@@ -139,7 +148,7 @@ Shape read_shape(const TableReader& table, const std::string& directory, bool mo
   for (const std::string_view key : shape_keys().subspan(1)) {
     if (table.has(key) &&
         std::find(std::begin(kind.keys), std::end(kind.keys), key) == std::end(kind.keys)) {
-      table.fail(key, fmt::format("a {} has no {}", kind.name, key));
+      table.fail(key, fmt::format("a {} has no {}; allowed: {}", kind.name, key, sizes(kind)));
     }
   }
   if (kind.name == "sphere") {

@@ -20,6 +20,7 @@ namespace kairos::python {
 namespace {
 
 constexpr std::size_t kind_length = 24;  // of the name of a kind of event
+constexpr std::size_t grade_length = 8;
 
 std::size_t longest_name(const Model& model) {
   std::size_t longest = 1;
@@ -43,6 +44,7 @@ py::dtype event_dtype(std::size_t name_length) {
       type.field(prefix + "angular_velocity", "(3,)<f8");
     }
   }
+  type.field("grade", fmt::format("<U{}", grade_length)).field("bracket", "<f8");
   return type.dtype();
 }
 
@@ -163,6 +165,8 @@ py::array events_array(const Model& model, const std::vector<Event>& events) {
          {&event.before_a, &event.after_a, &event.before_b, &event.after_b}) {
       writer.state(*state);
     }
+    writer.text(changes_contact(event.kind) ? to_string(event.grade) : "", grade_length);
+    writer.number(event.bracket);
     row += stride;
   }
   return array;

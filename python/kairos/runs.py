@@ -67,7 +67,9 @@ class Run:
     def events(self) -> np.ndarray:
         """Structured, a row per event: t, t_correction (s), kind, a, b (names), a_index, b_index,
         gap (m), point, normal (3,), and position, velocity, angular_velocity of both bodies before
-        and after: a_before_velocity, ... The columns of events.csv."""
+        and after: a_before_velocity, ...; grade, how the time of a contact's beginning or end was
+        found ("" of others), and bracket (s): it happens in [t, t + bracket]; NaN where that is
+        not known. The columns of events.csv."""
         return self._record.events
 
     @property

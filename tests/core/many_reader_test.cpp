@@ -106,7 +106,7 @@ TEST_CASE("many: what cannot be is refused with file, line, key and what is allo
   has(complaint("count = 5\nradius = 0.2\n"), "many.b.region: is missing");
   has(complaint("count = 5\nradius = 0.2\nregion = {min = [0, 0, 0], max = [1, 0, 1]}\n"),
       "s.toml:7: many.b.region.max: is not above min");
-  has(complaint("count = 5000\nradius = 0.2\n" + region), "on a lattice it holds at most");
+  has(complaint("count = 5000\nradius = 0.2\n" + region), "allowed: at most");
   has(complaint("count = 900\nradius = 0.2\nplacement = \"random\"\n" + region), "jams at 0.38");
   has(complaint("count = 5\nradius = 3.0\nplacement = \"random\"\n" + region),
       "no room for more than 0 of 5");

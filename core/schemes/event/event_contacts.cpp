@@ -416,7 +416,11 @@ void EventContacts::begin_contact(BodyIndex i, BodyIndex j, Instant t) {
   if (motions_.support(i) && touching != touching_.end() && touching->second.contact_begins == t) {
     run_.time = t;
     touching->second.contact_begins = recorded;
-    motions_.note(EventKind::contact_begins, i, motions_.support(i)->surface, t);
+    motions_.note({.time = t,
+                   .kind = EventKind::contact_begins,
+                   .bracket = 0.0,
+                   .a = i,
+                   .b = motions_.support(i)->surface});
   }
 }
 
@@ -425,7 +429,10 @@ void EventContacts::end_contact(BodyIndex i, Instant t) {
   const BodyIndex surface = motions_.support(i)->surface;
   motions_.set_support(i, std::nullopt);
   if (began < t) {  // otherwise its hops had not died down
-    motions_.note(EventKind::contact_ends, i, surface, t);
+    Event event{.time = t, .kind = EventKind::contact_ends, .a = i, .b = surface};
+    event.before_a = event.after_a = motions_.now(i);  // what it was struck to, at this instant
+    event.before_b = event.after_b = motions_.at(surface, t);
+    run_.note(event);
   }
   began = Instant::never();
 }

@@ -79,14 +79,14 @@ class EventContacts {
                             const EventModes::SettleOptions& options = {});
   [[nodiscard]] bool could_be_supported(BodyIndex a, BodyIndex b, Instant t) const;
   [[nodiscard]] std::string unkept() const;
-  [[nodiscard]] bool strike_group(const BodyPair& pair, double approach, Instant t);
+  [[nodiscard]] bool strike_group(const Event& first, double approach);
   void leave_at_rest(const EventModes::GroupImpact& impact, const Eigen::VectorXd& impulses,
                      std::vector<Twist>& v) const;
   static void return_as_struck(const EventModes::GroupImpact& impact,
                                const Eigen::VectorXd& impulses, const std::vector<Twist>& struck,
                                std::vector<Twist>& v);
   void tell_group(const EventModes::GroupImpact& impact, const Eigen::VectorXd& impulses,
-                  std::span<const BodyState> before, const BodyPair& first, Instant t);
+                  std::span<const BodyState> before, const Event& first);
   void hand_on(const Event& first, double approach, std::vector<BodyIndex> bodies, Instant t);
   void go_on_from(std::span<const BodyIndex> bodies, const BodyPair& first, double approach,
                   Instant t);

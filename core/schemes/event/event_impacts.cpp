@@ -158,6 +158,9 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double bracket, 
     return depart(a, b, t);
   }
   Event event{.time = t, .kind = EventKind::impact, .a = a, .b = b};
+  if (bracket > 0.0) {  // otherwise a step of bodies that turn ended in it
+    event.bracket = bracket;
+  }
   const auto landing = modes_.landing(a, b);
   event.contact = landing ? landing->contact : contact_at(a, b, t, bracket);
   const double approach = normal_velocity(event.contact, motions_.now(a), motions_.now(b));
@@ -189,7 +192,7 @@ void EventContacts::meet(Event& event, Instant t) {
   const auto [a, b] = std::pair{event.a, event.b};
   const std::array<BodyIndex, 2> pair{a, b};
   const double approach = normal_velocity(event.contact, motions_.now(a), motions_.now(b));
-  if (strike_group({a, b}, std::max(-approach, 0.0), t)) {
+  if (strike_group(event, std::max(-approach, 0.0))) {
     return;
   }
   std::vector<BodyIndex> group;
@@ -498,7 +501,9 @@ void EventContacts::return_as_struck(const EventModes::GroupImpact& impact,
 
 /// Strikes all bodies of a group at once, if the impact law takes groups; false if it does not, or
 /// there is no group.
-bool EventContacts::strike_group(const BodyPair& pair, double approach, Instant t) {
+bool EventContacts::strike_group(const Event& first, double approach) {
+  const BodyPair pair{first.a, first.b};
+  const Instant t = first.time;
   const GroupLaw* const law = group_law_;
   if (joints_of(pair.first) != nullptr || joints_of(pair.second) != nullptr) {
     return false;
@@ -561,7 +566,7 @@ bool EventContacts::strike_group(const BodyPair& pair, double approach, Instant 
       }
     }
   }
-  tell_group(impact, impulses, before, pair, t);
+  tell_group(impact, impulses, before, first);
   go_on_from(bodies, pair, approach, t);
   return true;
 }
@@ -571,13 +576,13 @@ bool EventContacts::strike_group(const BodyPair& pair, double approach, Instant 
 /// none approached, the centre of all impulses.
 void EventContacts::tell_group(const EventModes::GroupImpact& impact,
                                const Eigen::VectorXd& impulses, std::span<const BodyState> before,
-                               const BodyPair& first, Instant t) {
+                               const Event& first) {
   const auto place = [&](BodyIndex i) {
     const auto found = std::find(impact.bodies.begin(), impact.bodies.end(), i);
     return static_cast<std::size_t>(found - impact.bodies.begin());
   };
   const auto is_first = [&](const BodyPair& p) {
-    return p == first || p == BodyPair{first.second, first.first};
+    return p == BodyPair{first.a, first.b} || p == BodyPair{first.b, first.a};
   };
   double fastest = 0.0;
   for (const BodyState& s : before) {
@@ -586,7 +591,8 @@ void EventContacts::tell_group(const EventModes::GroupImpact& impact,
   const double resolved = 64.0 * epsilon * fastest;
   const auto tell = [&](std::size_t p) {
     const auto [a, b] = impact.pairs[p];
-    Event event{.time = t, .kind = EventKind::impact, .a = a, .b = b};
+    Event event{
+        .time = first.time, .kind = EventKind::impact, .bracket = first.bracket, .a = a, .b = b};
     struct Centre {
       double total = 0.0;
       Vector3 sum = Vector3::Zero();
@@ -667,7 +673,11 @@ void EventContacts::hand_on(const Event& first, double approach, std::vector<Bod
                                       "in touch more than {} times; {}",
                                       run_.names(first.a, first.b), most, lasting_contact_advice));
     }
-    Event event{.time = t, .kind = EventKind::impact, .a = worst->a, .b = worst->b};
+    Event event{.time = t,
+                .kind = EventKind::impact,
+                .bracket = first.bracket,
+                .a = worst->a,
+                .b = worst->b};
     event.contact = worst->contact;
     strike(event);
   }

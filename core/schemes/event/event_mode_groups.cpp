@@ -75,6 +75,7 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
                                         const SettleOptions& options) {
   Gathered found;
   found.group.instant = at_once * run_.epoch();
+  found.remaining = options.remaining;
   const auto is_seed = [&](BodyIndex i) {
     return std::find(seeds.begin(), seeds.end(), i) != seeds.end();
   };

@@ -343,10 +343,13 @@ void EventModes::set_friction(const Gathered& found, const FlatMode& mode, Insta
     };
     const auto moves_by_itself = [&](BodyIndex i) { return !run_.model.is_free(i); };
     const Grade grade = mode.turns ? Grade::sampled : Grade::exact;
-    const Slip before = graph_.find(a, b)->slip;
-    const Slip now = mode.slip[p] == Slip::begins ? Slip::slides : mode.slip[p];
-    graph_.find(a, b)->slip = now;
-    if (mode.slip[p] == Slip::begins || (now == Slip::slides && before != Slip::slides)) {
+    Patch& held = *graph_.find(a, b);
+    const Slip before =
+        std::exchange(held.slip, mode.slip[p] == Slip::begins ? Slip::slides : mode.slip[p]);
+    const Slip now = held.slip;
+    if (!held.told) {
+      // What it does is told when it begins.
+    } else if (mode.slip[p] == Slip::begins || (now == Slip::slides && before != Slip::slides)) {
       changes.push_back({EventKind::slip_begins, a, b, grade});
     } else if (now == Slip::sticks && before == Slip::slides) {
       const bool rolls = (found.group.round[patch.a] != 0 && run_.model.rotates(a)) ||
@@ -377,7 +380,12 @@ void EventModes::set_friction(const Gathered& found, const FlatMode& mode, Insta
 
 void EventModes::tell(std::span<const Change> changes, Instant t) {
   for (const Change& change : changes) {
-    motions_.note(change.kind, change.a, change.b, t, change.grade);
+    motions_.note({.time = t,
+                   .kind = change.kind,
+                   .grade = change.grade,
+                   .bracket = change.bracket,
+                   .a = change.a,
+                   .b = change.b});
   }
 }
 
@@ -433,7 +441,9 @@ std::vector<EventModes::Change> EventModes::join_and_part(const Gathered& found,
       run_.agenda.push(patch.begins, DueKind::contact_begins, a, b);
     } else {
       patch.told = true;
-      changes.push_back({EventKind::contact_begins, a, b});
+      changes.push_back({EventKind::contact_begins, a, b,
+                         mode.turns ? Grade::sampled : Grade::exact,
+                         mode.turns ? Event{}.bracket : found.remaining});
     }
   }
   return changes;
@@ -444,7 +454,10 @@ void EventModes::begin_contact(BodyIndex a, BodyIndex b, Instant t) {
   if (patch != nullptr && !patch->told && patch->begins == t) {
     run_.time = t;
     patch->told = true;
-    motions_.note(EventKind::contact_begins, a, b, t);
+    motions_.note({.time = t, .kind = EventKind::contact_begins, .bracket = 0.0, .a = a, .b = b});
+    if (patch->slip == Slip::slides) {
+      motions_.note(EventKind::slip_begins, a, b, t);
+    }
   }
 }
 

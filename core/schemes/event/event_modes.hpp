@@ -87,6 +87,7 @@ class EventModes {
     BodyIndex a = 0;
     BodyIndex b = 0;
     Grade grade = Grade::exact;
+    double bracket = Event{}.bracket;  ///< s
   };
   /// An impact of several bodies in touch, as an impact law sees it.
   struct GroupImpact {

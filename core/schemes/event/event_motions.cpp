@@ -623,10 +623,13 @@ void EventMotions::set_forces(Flow& flow) {
 
 // --- What is told ------------------------------------------------------------------------------
 
-void EventMotions::note(EventKind kind, BodyIndex a, BodyIndex b, Instant t, Grade grade) {
-  Event event{.time = t, .kind = kind, .grade = grade, .a = a, .b = b};
-  event.before_a = event.after_a = at(a, t);
-  event.before_b = event.after_b = at(b, t);
+void EventMotions::note(EventKind kind, BodyIndex a, BodyIndex b, Instant t) {
+  note({.time = t, .kind = kind, .a = a, .b = b});
+}
+
+void EventMotions::note(Event event) {
+  event.before_a = event.after_a = at(event.a, event.time);
+  event.before_b = event.after_b = at(event.b, event.time);
   run_.note(event);
 }
 

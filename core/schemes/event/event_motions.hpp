@@ -200,7 +200,9 @@ class EventMotions {
   [[nodiscard]] State last_drawn() &&;
 
   /// Tells the recorder what happened to two bodies whose states did not jump.
-  void note(EventKind kind, BodyIndex a, BodyIndex b, Instant t, Grade grade = Grade::exact);
+  void note(EventKind kind, BodyIndex a, BodyIndex b, Instant t);
+  /// The same of an event that lacks the states only.
+  void note(Event event);
   [[nodiscard]] std::int64_t evaluations() const;
   /// What the event that is over left out of a jump, or nothing; see `JumpWatch`.
   [[nodiscard]] std::string_view left_out() const { return run_.jumps.left_out(now_); }

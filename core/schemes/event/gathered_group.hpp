@@ -22,6 +22,7 @@ struct EventModes::Gathered {
   std::vector<std::pair<BodyIndex, BodyIndex>> pairs;  ///< by patch
   std::vector<char> passes;  ///< by patch: it strikes, or parts; it is known only to stay clear of
   ContactGroup group;
+  double remaining = 0.0;  ///< until the accumulation is over that ends in this, s
   std::string refusal;
   std::optional<BodyIndex> driven;  ///< one of those that are
   std::optional<BodyIndex> varies;  ///< one of those that feel forces which are not constant
