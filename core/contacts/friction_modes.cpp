@@ -287,15 +287,24 @@ class Attempt {
     a = forces_.relative(t, mode_.accelerations);
     a -= t.n * t.n.dot(a);
     const double along = a.dot(choice.direction);
+    // What completes an accumulation changes the slide, too.
+    Vector3 slip = forces_.relative(t, mode_.velocities) + patch.drift;
+    slip -= t.n * t.n.dot(slip);
+    const double forward = slip.dot(choice.direction);
+    if ((slip - forward * choice.direction).norm() > project_roundoff * fastest_ ||
+        forward < -project_roundoff * fastest_) {
+      refuse("what is left of the bounces would change where a body slides to");
+      return;
+    }
     // A body that has nearly stopped is on the line on which it stops.
-    const bool slow = t.slip.norm() <= 128.0 * still();
+    const bool slow = forward <= 128.0 * still();
     if (!slow && (a - along * choice.direction).norm() > solve_roundoff * load_) {
       mode_.curved = true;
       refuse("a body slides on a curved path");
       return;
     }
     if (along < 0.0) {
-      mode_.slip_ends[t.patch] = t.slip.dot(choice.direction) / -along;
+      mode_.slip_ends[t.patch] = std::max(forward, 0.0) / -along;
     }
   }
 

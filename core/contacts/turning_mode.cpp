@@ -177,7 +177,23 @@ class Search {
       }
     }
     return across.lpNorm<Eigen::Infinity>() <= nearly_aligned && slides_on(choices, begins) &&
-           accept(choices);
+           (sticks_rather(choices, begins) || accept(choices));
+  }
+
+  /// What begins to slide without an acceleration sticks, where that can be verified: forces may be
+  /// at the edge of a cone because others could take what they do, and slipping would only end, and
+  /// begin again.
+  bool sticks_rather(std::vector<Choice> choices, const std::vector<std::size_t>& begins) {
+    const Solution found = forces_.solve(choices);
+    bool some = false;
+    for (const std::size_t k : begins) {
+      if (choices[k].direction.dot(forces_.acceleration(k, found.accelerations)) <=
+          turning_roundoff * forces_.load()) {
+        choices[k] = {Does::sticks, Vector3::Zero()};
+        some = true;
+      }
+    }
+    return some && attempt(std::move(choices));
   }
 
   /// Where friction is not known to act against yet: the acceleration without it.

@@ -471,11 +471,12 @@ class Step {
   }
 
   template <typename Bodies, typename Pairs>
-  void power_at(double s, Bodies of_body, Pairs of_pair, Bodies leaks) const {
+  void power_at(double s, Bodies of_body, Pairs of_pair, Bodies leaks) {
     const TurningState state = at(s);
     TurningForces forces(state);
     const auto choices = directed(mode_, forces.now(), slow_);
-    const auto found = forces.solve(choices, !forces.several());
+    // Of forces that are redundant those inside their cones rub.
+    const auto found = forces.verified(choices, {.carry = &carry_});
     for (std::size_t k = 0; k < state.touches.size(); ++k) {
       const Touch& touch = state.touches[k];
       const TouchNow& now = forces.now()[k];

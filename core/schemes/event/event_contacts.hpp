@@ -58,7 +58,7 @@ class EventContacts {
     void persist(Archive& archive);
   };
 
-  [[nodiscard]] bool impact_of_balls(BodyIndex a, BodyIndex b, Instant t);
+  [[nodiscard]] bool impact_of_balls(BodyIndex a, BodyIndex b, Instant t, double bracket);
   bool meet_in_one_box(BodyIndex a, BodyIndex b, Instant t);
   void meet(Event& event, Instant t);
   void go_on_struck(const Event& event, double approach, std::vector<BodyIndex> group, Instant t);

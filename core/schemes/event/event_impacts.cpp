@@ -100,7 +100,7 @@ double EventContacts::passes_by(BodyIndex a, BodyIndex b, Instant t) const {
 /// `impact` of two plain balls that nothing else touches, without looking for what they have not:
 /// the same, bit by bit. False, and nothing has changed but that both are open, where more may have
 /// to be done.
-bool EventContacts::impact_of_balls(BodyIndex a, BodyIndex b, Instant t) {
+bool EventContacts::impact_of_balls(BodyIndex a, BodyIndex b, Instant t, double bracket) {
   if (point_law_ == nullptr || ball_detector_ == nullptr || !graph_.empty() ||
       !motions_.is_plain(a) || !motions_.is_plain(b)) {
     return false;
@@ -110,7 +110,7 @@ bool EventContacts::impact_of_balls(BodyIndex a, BodyIndex b, Instant t) {
   if (ball_a == nullptr || ball_b == nullptr) {
     return false;
   }
-  Event event{.time = t, .kind = EventKind::impact, .a = a, .b = b};
+  Event event{.time = t, .kind = EventKind::impact, .bracket = bracket, .a = a, .b = b};
   event.before_a = event.after_a = motions_.open_ball(a, *ball_a, t);
   event.before_b = event.after_b = motions_.open_ball(b, *ball_b, t);
   const Overlap o = ball_detector_->ball_overlap(event.before_a.pose.position, ball_a->radius,
@@ -149,7 +149,7 @@ bool EventContacts::impact_of_balls(BodyIndex a, BodyIndex b, Instant t) {
 }
 
 void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double bracket, bool decided) {
-  if (impact_of_balls(a, b, t)) {
+  if (impact_of_balls(a, b, t, bracket)) {
     return;
   }
   motions_.open_pair(a, b, t);

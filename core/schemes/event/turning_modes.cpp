@@ -23,13 +23,13 @@ constexpr double least_gap = 1.0 / 16.0;
 constexpr double rough = 1e8;
 /// Steps that are shorter than this part of a frame, so many in a row, get nowhere.
 constexpr double short_step = 1e-4;
-constexpr int most_short_steps = 500;
+constexpr int most_short_steps = 1500;
 /// After so many of them, and for as many, slip that the loads make within one is none: its
 /// direction turns, and it stops, within what such a step cannot tell. What it then does is
 /// verified as ever.
 constexpr int few_short_steps = 50;
 /// A body that turns has so many steps in a frame at most.
-constexpr int most_steps = 1000;
+constexpr int most_steps = 4000;
 /// So many free bodies of a group may turn: forces of more are found too slowly.
 constexpr std::ptrdiff_t most_bodies = 24;
 
