@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace kairos;
@@ -580,5 +581,73 @@ TEST_CASE("friction: a box that lands flat on another keeps momentum and its mom
         CHECK((moment(sim.result.state) - moment(start)).norm() <= 1e-9);
       }
     }
+  }
+}
+
+// The heavy ball pins the light one by infinitely many impacts, which take most of the slide: when
+// the rest of it ends was told from the slide before.
+TEST_CASE("friction: a slide that an accumulation slowed ends where it comes to rest",
+          "[friction]") {
+  const Simulation sim = simulate(
+      parse_scene(
+          "duration = 0.78\nframe = 0.047\nG = 9.8\n[[body]]\nname = \"plane\"\nentity = "
+          "\"wall\"\nshape = \"half-space\"\nnormal = [-0.09989892418683778, "
+          "0.994997590422365, 0]\nfriction = 0.13\n[[body]]\nname = \"low\"\nentity = "
+          "\"ball\"\nradius = 0.12\nposition = [0.16, 0.44, 0]\nmass = 1\nrestitution = "
+          "0.5\nfriction = 0.3\n[[body]]\nname = \"high\"\nentity = \"ball\"\nradius = "
+          "0.42\nposition = [0.16, 1.2, 0]\nmass = 580\nrestitution = 0.72\nfriction = 0.3\n",
+          "test.toml"),
+      {});
+  INFO(sim.result.reason);
+  REQUIRE(sim.result.status == RunStatus::completed);
+  // Friction holds both on this slope (0.197 > tan 0.1): nothing moves any more.
+  CHECK(sim.result.ledger.kinetic() == 0.0);
+  tests::check_explained(sim.result.ledger);
+}
+
+// Four boxes beside and on each other: side faces touch, slide and press nothing. Forces of least
+// norm pull at some of their corners and press at others.
+TEST_CASE("friction: what is redundant and presses nothing rubs nothing", "[friction]") {
+  constexpr double half = 1.2576266;
+  std::string text = head(2.6311168, 0.3) + plane("floor");
+  text += box("b", Vector3::Constant(half), {2.5152532, 7.3353647, 0}, "", 0.5);
+  text += box("c", Vector3::Constant(half), {0, 7.3353647, 0}, "", 0.5);
+  text += box("d", Vector3::Constant(half), {5.0305064, 4.8201115, 0}, "friction = 0", 0.5);
+  text += box("e", Vector3::Constant(half), {2.5152532, 4.8201115, 0}, "", 0.5);
+  const Simulation sim = simulate(parse_scene(text, "test.toml"), {});
+  INFO(sim.result.reason);
+  CHECK(sim.result.cost.steps > 20);
+  const EnergyLedger& ledger = sim.result.ledger;
+  tests::check_explained(ledger);
+  // Steps are made to 1e-12.
+  CHECK(std::abs(ledger.line(EnergyLine::truncation)) <=
+        1e-9 * (ledger.kinetic() + ledger.potential()));
+  CHECK(ledger.line(EnergyLine::friction) <= 0.0);
+}
+
+// Balls in corners roll on two walls at once, where forces are redundant: some are at the edge of
+// their cones, and yet nothing begins to slide.
+TEST_CASE("friction: ten balls in a bin go on to the end", "[friction]") {
+  for (const int seed : {1, 2, 3, 4}) {
+    const Simulation sim = simulate(
+        parse_scene(
+            "duration = 3\nframe = \"1/60\"\nG = 9.8\nfriction = 0.3\n" + plane("floor") +
+                "[[body]]\nname = \"left\"\nentity = \"wall\"\nshape = \"half-space\"\nnormal = "
+                "[1, 0, 0]\nposition = [-0.25, 0, 0]\n[[body]]\nname = \"right\"\nentity = "
+                "\"wall\"\nshape = \"half-space\"\nnormal = [-1, 0, 0]\nposition = [0.25, 0, 0]\n"
+                "[[body]]\nname = \"back\"\nentity = \"wall\"\nshape = \"half-space\"\nnormal = "
+                "[0, 0, 1]\nposition = [0, 0, -0.25]\n[[body]]\nname = \"front\"\nentity = "
+                "\"wall\"\nshape = \"half-space\"\nnormal = [0, 0, -1]\nposition = [0, 0, 0.25]\n" +
+                fmt::format("[[many]]\nname = \"ball\"\nentity = \"body\"\nshape = \"sphere\"\n"
+                            "radius = 0.04\nmass = 0.1\nrestitution = 0.6\ncount = 10\nplacement = "
+                            "\"random\"\nseed = {}\nvelocity_deviation = 0.5\n[many.region]\nmin = "
+                            "[-0.2, 0.05, -0.2]\nmax = [0.2, 1, 0.2]\n",
+                            seed),
+            "test.toml"),
+        {});
+    CAPTURE(seed, sim.result.reason);
+    CHECK(sim.result.status == RunStatus::completed);
+    tests::check_explained(sim.result.ledger);
+    CHECK(sim.result.ledger.line(EnergyLine::friction) < 0.0);
   }
 }
