@@ -47,6 +47,18 @@ bool changes_contact(EventKind kind) {
   return false;
 }
 
+std::string_view to_string(EventFlag flag) {
+  switch (flag) {
+    case EventFlag::none:
+      return "";
+    case EventFlag::set_valued:
+      return "set-valued";
+    case EventFlag::painleve:
+      return "painleve";
+  }
+  return "unknown";
+}
+
 std::string_view to_string(Grade grade) {
   switch (grade) {
     case Grade::exact:

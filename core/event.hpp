@@ -35,6 +35,18 @@ enum class Grade {
 /// The word for it in `events.csv`.
 [[nodiscard]] std::string_view to_string(Grade grade);
 
+/// What a reader has to know of an impact before he relies on what came of it.
+enum class EventFlag {
+  none,
+  /// The impact was handed on between bodies in touch, pair by pair, where they approached fastest:
+  /// of such impacts several outcomes are possible [Halm2021], and the law's order chose this one.
+  set_valued,
+  /// Painleve's case: no forces go with the slide, which an impulse at no speed stops [Genot1999].
+  painleve,
+};
+/// The word for it in `events.csv`; empty: none.
+[[nodiscard]] std::string_view to_string(EventFlag flag);
+
 /// Whether an event of this kind tells how a body touches another from now on: it has a grade.
 [[nodiscard]] bool changes_contact(EventKind kind);
 
@@ -43,6 +55,7 @@ struct Event {
   Instant time;
   EventKind kind = EventKind::impact;
   Grade grade = Grade::exact;  ///< where `changes_contact(kind)`
+  EventFlag flag = EventFlag::none;
   /// s: it happens in [time, time + bracket]. Of an impact: what the detector tells, proven where
   /// it proves. Of a contact that begins: until the last of the hops that are left, as the motion
   /// tells when it is linearised. NaN: not known.

@@ -21,6 +21,7 @@ namespace {
 
 constexpr std::size_t kind_length = 24;  // of the name of a kind of event
 constexpr std::size_t grade_length = 8;
+constexpr std::size_t flag_length = 12;
 
 std::size_t longest_name(const Model& model) {
   std::size_t longest = 1;
@@ -45,6 +46,7 @@ py::dtype event_dtype(std::size_t name_length) {
     }
   }
   type.field("grade", fmt::format("<U{}", grade_length)).field("bracket", "<f8");
+  type.field("flag", fmt::format("<U{}", flag_length));
   return type.dtype();
 }
 
@@ -167,6 +169,7 @@ py::array events_array(const Model& model, const std::vector<Event>& events) {
     }
     writer.text(changes_contact(event.kind) ? to_string(event.grade) : "", grade_length);
     writer.number(event.bracket);
+    writer.text(to_string(event.flag), flag_length);
     row += stride;
   }
   return array;

@@ -34,7 +34,7 @@ void RunTables::begin(const Model& model) {
   sinks_.trajectory("t,body,px,py,pz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz\n");
   sinks_.events("t,t_correction,kind,a,b,gap,px,py,pz,nx,ny,nz" + state_columns("a_before_") +
                 state_columns("a_after_") + state_columns("b_before_") + state_columns("b_after_") +
-                ",grade,bracket\n");
+                ",grade,bracket,flag\n");
   sinks_.energy(energy_columns());
 }
 
@@ -69,7 +69,7 @@ void RunTables::event(const Event& event) {
   append_state(row_, event.before_b);
   append_state(row_, event.after_b);
   row_.text(changes_contact(event.kind) ? to_string(event.grade) : "");
-  row_.number(event.bracket);
+  row_.number(event.bracket).text(to_string(event.flag));
   sinks_.events(row_.finish());
 }
 

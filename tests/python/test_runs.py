@@ -58,9 +58,9 @@ def test_arrays_equal_the_files_of_the_program(scene, options, program, tmp_path
     if events and frames is not None:
         assert list(events[0]) == list(frames.events.columns)
         for name in events[0]:
-            if name not in ("kind", "a", "b", "grade"):
+            if name not in ("kind", "a", "b", "grade", "flag"):
                 assert same(column(events, name), frames.events[name]), name
-        for name in ("kind", "grade"):
+        for name in ("kind", "grade", "flag"):
             assert [row[name] for row in events] == list(run.events[name])
         assert [(row["a"], row["b"]) for row in events] == list(zip(run.events["a"], run.events["b"]))
 

@@ -108,3 +108,25 @@ TEST_CASE("what hops and slides is told to slide when its contact has begun", "[
     CHECK((event.kind != EventKind::stick_begins || begun > 0));
   }
 }
+
+TEST_CASE("what is handed on between bodies in touch is told to be set-valued", "[event-driven]") {
+  const auto body = [](const std::string& name, const std::string& shape, double height) {
+    return fmt::format(
+        "[[body]]\nname = \"{}\"\nentity = \"body\"\n{}\nmass = 1\nposition = [0, {}, 0]\n"
+        "restitution = 0.5\n",
+        name, shape, height);
+  };
+  const std::string brick = "half_extents = [0.2, 0.1, 0.2]";
+  const Simulation sim =
+      run("duration = 0.5\nfriction = 0.2\n" + floor_body + body("low", brick, 0.1) +
+          body("top", brick, 0.3) + body("ball", "radius = 0.1", 0.6));
+  const std::vector<Event> impacts = of_kind(sim, EventKind::impact);
+  REQUIRE(impacts.size() > 2);
+  CHECK(impacts[0].flag == EventFlag::none);  // of the ball, alone
+  CHECK(impacts[1].time == impacts[0].time);
+  CHECK(impacts[1].flag == EventFlag::set_valued);
+  const Simulation alone = run("duration = 2\n" + floor_body + body("ball", "radius = 0.1", 0.6));
+  for (const Event& event : alone.trajectory.events()) {
+    CHECK(event.flag == EventFlag::none);
+  }
+}

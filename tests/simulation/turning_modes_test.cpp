@@ -581,6 +581,28 @@ TEST_CASE("turning: a tilted box with large friction lands, jams, and comes to r
   }
 }
 
+TEST_CASE("turning: an impulse in Painleve's case is told as such, and gives nothing",
+          "[turning]") {
+  const std::string text =
+      head(0.8, "2.0") +
+      "[[body]]\nname = \"low\"\nentity = \"body\"\nhalf_extents = [0.1, 0.1, 0.1]\nmass = 1\n"
+      "restitution = 0\nposition = [-0.018664709518096206, 0.6, 0]\naxis_angle = [0.3, 0, 1, "
+      "0.2741504856495448]\nvelocity = [-0.9626174471525291, 0, 0]\n"
+      "[[body]]\nname = \"top\"\nentity = \"body\"\nhalf_extents = [0.1, 0.1, 0.1]\nmass = 1\n"
+      "restitution = 0\nposition = [-0.16590265758864425, 1.05, 0]\naxis_angle = [0, 0, 1, 1e-6]\n"
+      "velocity = [0.012934082656715029, 0, 0]\n";
+  const Simulation sim = run(text);
+  check_whole(sim, text);
+  std::set<double> told;
+  for (const Event& event : sim.trajectory.events()) {
+    if (event.flag == EventFlag::painleve) {
+      told.insert(event.time.seconds);
+    }
+  }
+  CHECK(!told.empty());
+  CHECK(sim.result.ledger.line(EnergyLine::impact_friction) < 0.0);
+}
+
 // It stops sliding on the kerb while its direction turns ever faster.
 TEST_CASE("turning: a ball that meets a kerb askew goes on", "[turning]") {
   const std::string text =

@@ -675,6 +675,7 @@ void EventContacts::hand_on(const Event& first, double approach, std::vector<Bod
     }
     Event event{.time = t,
                 .kind = EventKind::impact,
+                .flag = EventFlag::set_valued,
                 .bracket = first.bracket,
                 .a = worst->a,
                 .b = worst->b};

@@ -392,7 +392,7 @@ void EventModes::tell_jam(const Gathered& found, const Turning& turning, Instant
     const auto& [a, b] = found.pairs[touch.pair];
     const std::size_t at_a = found.place(a);
     const std::size_t at_b = found.place(b);
-    Event event{.time = t, .kind = EventKind::impact, .a = a, .b = b};
+    Event event{.time = t, .kind = EventKind::impact, .flag = EventFlag::painleve, .a = a, .b = b};
     const TouchNow now = look_at(touch, found.states[touch.a], found.states[touch.b]);
     event.contact = {0.5 * (now.point_a + now.point_b), now.normal, now.gap};
     event.contact.restitution = run_.model.restitution(a, b);
