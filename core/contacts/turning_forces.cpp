@@ -110,6 +110,27 @@ TurningForces::Line TurningForces::line(std::size_t k, const Vector3& d) const {
   return out;
 }
 
+MatrixXd TurningForces::couplings(std::span<const Line> asks, std::span<const Line> gives) const {
+  MatrixXd K(static_cast<Index>(asks.size()), static_cast<Index>(gives.size()));
+  for (Index r = 0; r < K.rows(); ++r) {
+    for (Index c = 0; c < K.cols(); ++c) {
+      K(r, c) = coupling(asks[static_cast<std::size_t>(r)], gives[static_cast<std::size_t>(c)]);
+    }
+  }
+  return K;
+}
+
+VectorXd TurningForces::loads_along(std::span<const Line> lines) const {
+  VectorXd q(static_cast<Index>(lines.size()));
+  for (Index r = 0; r < q.size(); ++r) {
+    const Line& line = lines[static_cast<std::size_t>(r)];
+    const bool normal = line.direction == now_[line.touch].normal;
+    q[r] = normal ? gap_acceleration(line.touch, state_.loads)
+                  : line.direction.dot(acceleration(line.touch, state_.loads));
+  }
+  return q;
+}
+
 double TurningForces::coupling(const Line& asks, const Line& gives) const {
   const Touch& r = state_.touches[asks.touch];
   const Touch& s = state_.touches[gives.touch];
@@ -165,17 +186,8 @@ TurningForces::Solution TurningForces::solve(std::span<const FrictionChoice> cho
     }
   }
   const auto n = static_cast<Index>(asks.size());
-  MatrixXd K(n, n);
-  VectorXd q(n);
-  for (Index r = 0; r < n; ++r) {
-    const Line& row = asks[static_cast<std::size_t>(r)];
-    for (Index c = 0; c < n; ++c) {
-      K(r, c) = coupling(row, gives[static_cast<std::size_t>(c)]);
-    }
-    const bool normal = row.direction == now_[row.touch].normal;
-    q[r] = normal ? gap_acceleration(row.touch, state_.loads)
-                  : row.direction.dot(acceleration(row.touch, state_.loads));
-  }
+  const MatrixXd K = couplings(asks, gives);
+  const VectorXd q = loads_along(asks);
   Solution found;
   found.force.assign(choices.size(), Vector3::Zero());
   found.accelerations = state_.loads;
@@ -465,16 +477,8 @@ std::vector<FrictionChoice> TurningForces::complementary(std::span<const Frictio
     }
     const auto rows = static_cast<Index>(n);
     const auto all = static_cast<Index>(lines.size());
-    MatrixXd K(all, all);
-    VectorXd q(all);
-    for (Index r = 0; r < all; ++r) {
-      const Line& row = lines[static_cast<std::size_t>(r)];
-      for (Index c = 0; c < all; ++c) {
-        K(r, c) = coupling(row, lines[static_cast<std::size_t>(c)]);
-      }
-      q[r] = r < rows ? gap_acceleration(row.touch, state_.loads)
-                      : row.direction.dot(acceleration(row.touch, state_.loads));
-    }
+    MatrixXd K = couplings(lines, lines);
+    VectorXd q = loads_along(lines);
     ++solves_;
     const Index tangents = all - rows;
     Eigen::CompleteOrthogonalDecomposition<MatrixXd> held;

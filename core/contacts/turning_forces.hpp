@@ -88,6 +88,10 @@ class TurningForces {
   };
   [[nodiscard]] Line line(std::size_t touch, const Vector3& direction) const;
   [[nodiscard]] double coupling(const Line& asks, const Line& gives) const;
+  [[nodiscard]] Eigen::MatrixXd couplings(std::span<const Line> asks,
+                                          std::span<const Line> gives) const;
+  /// Accelerations without contact forces, of gaps and surfaces along these, m/s^2.
+  [[nodiscard]] Eigen::VectorXd loads_along(std::span<const Line> lines) const;
   void push(const Line& line, double force, std::vector<Twist>& accelerations) const;
   [[nodiscard]] double cone_violation(std::span<const FrictionChoice> choices,
                                       const Solution& found) const;

@@ -5,6 +5,7 @@
 #include "simulation/penetration.hpp"
 #include "simulation/simulate.hpp"
 #include "tests/catch.hpp"
+#include "tests/simulation/events.hpp"
 #include "tests/simulation/ledger_check.hpp"
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 #include <vector>
 
 using namespace kairos;
+using tests::of_kind;
 
 namespace {
 
@@ -74,16 +76,6 @@ void check_whole(const Simulation& sim, const std::string& text) {
   CHECK_FALSE(PenetrationProbe(model).first(sim.result.state));
 }
 
-std::vector<Event> told(const Simulation& sim, EventKind kind) {
-  std::vector<Event> events;
-  for (const Event& event : sim.trajectory.events()) {
-    if (event.kind == kind) {
-      events.push_back(event);
-    }
-  }
-  return events;
-}
-
 }  // namespace
 
 TEST_CASE("a box placed on a floor stays, bit for bit", "[modes]") {
@@ -93,7 +85,7 @@ TEST_CASE("a box placed on a floor stays, bit for bit", "[modes]") {
   CHECK(sim.result.cost.impacts == 0);
   CHECK(sim.result.state[1].pose.position == Vector3(0.3, 0.1, 0.2));
   CHECK(sim.result.state[1].twist.linear == Vector3(0, 0, 0));
-  CHECK(told(sim, EventKind::contact_begins).size() == 1);
+  CHECK(of_kind(sim.trajectory, EventKind::contact_begins).size() == 1);
 }
 
 TEST_CASE("stacks of 10 and 100 stand for 1e4 s: identical bits, no event after the first instant",
@@ -119,7 +111,7 @@ TEST_CASE("a box that falls flat: its bounces are completed at their limit", "[m
   const std::string text = head(5.0) + plane("floor") + cube("box", "[0, 0.5, 0]");
   const auto sim = run(text);
   check_whole(sim, text);
-  const auto begins = told(sim, EventKind::contact_begins);
+  const auto begins = of_kind(sim.trajectory, EventKind::contact_begins);
   REQUIRE(begins.size() == 1);
   CHECK(std::abs(begins[0].time.seconds - 3.0 * std::sqrt(2.0 * 0.4 / g)) <= 1e-9);
   const double completed = sim.result.ledger.line(EnergyLine::zeno_completion);
@@ -151,7 +143,7 @@ TEST_CASE("a ball on a resting box, and one above it", "[modes]") {
   const auto sim = run(above);
   check_whole(sim, above);
   // The box carries the impacts to the floor, and the ball bounces as on the floor itself.
-  const auto begins = told(sim, EventKind::contact_begins);
+  const auto begins = of_kind(sim.trajectory, EventKind::contact_begins);
   REQUIRE(begins.size() == 2);
   CHECK(std::abs(begins[1].time.seconds - 3.0 * std::sqrt(2.0 * 0.3 / g)) <= 1e-9);
   CHECK(sim.result.state[1].pose.position == Vector3(0.0, 0.1, 0.0));
@@ -261,7 +253,7 @@ TEST_CASE("a ball slides over a box and off it", "[modes]") {
                            ball("ball", "[0, 0.3, 0]", 0.5, "velocity = [2, 0, 0]");
   const auto sim = run(text);
   INFO(sim.result.reason);
-  const auto ends = told(sim, EventKind::contact_ends);
+  const auto ends = of_kind(sim.trajectory, EventKind::contact_ends);
   REQUIRE_FALSE(ends.empty());
   CHECK(std::abs(ends[0].time.seconds - 0.05) <= 1e-14);
   CHECK(sim.result.state[1].pose.position == Vector3(0.0, 0.1, 0.0));

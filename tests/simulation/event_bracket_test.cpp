@@ -5,6 +5,7 @@
 #include "core/reading/scene_reader.hpp"
 #include "simulation/simulate.hpp"
 #include "tests/catch.hpp"
+#include "tests/simulation/events.hpp"
 
 #include <fmt/format.h>
 
@@ -13,6 +14,7 @@
 #include <vector>
 
 using namespace kairos;
+using tests::of_kind;
 
 namespace {
 
@@ -20,16 +22,6 @@ const std::string floor_body =
     "[[body]]\nname = \"floor\"\nentity = \"wall\"\nshape = \"half-space\"\n";
 
 Simulation run(const std::string& text) { return simulate(parse_scene(text, "test.toml"), {}); }
-
-std::vector<Event> of_kind(const Simulation& sim, EventKind kind) {
-  std::vector<Event> found;
-  for (const Event& event : sim.trajectory.events()) {
-    if (event.kind == kind) {
-      found.push_back(event);
-    }
-  }
-  return found;
-}
 
 }  // namespace
 
@@ -49,7 +41,7 @@ TEST_CASE("the bracket of an impact holds its time", "[event-driven]") {
         box ? fmt::format("half_extents = [0.1, {}, 0.2]", radius)
             : fmt::format("radius = {}", radius),
         height, random.uniform(-1.0, 1.0), up));
-    const std::vector<Event> impacts = of_kind(sim, EventKind::impact);
+    const std::vector<Event> impacts = of_kind(sim.trajectory, EventKind::impact);
     CAPTURE(k, G, radius, height, up, box, sim.result.reason);
     REQUIRE(!impacts.empty());
     // The earlier root of height - radius + up t - G t^2 / 2, in a form in which nothing cancels.
@@ -75,8 +67,8 @@ TEST_CASE("what ends at an impact is told with the velocity that the impact left
           "normal = [0.49999999999999994, 0.8660254037844387, 0]\n"
           "[[body]]\nname = \"b\"\nentity = \"body\"\nshape = \"sphere\"\nradius = 0.05\nmass = 1\n"
           "position = [-0.8410254037844387, 0.5433012701892219, 0]\nrestitution = 0\n");
-  const std::vector<Event> impacts = of_kind(sim, EventKind::impact);
-  const std::vector<Event> ends = of_kind(sim, EventKind::contact_ends);
+  const std::vector<Event> impacts = of_kind(sim.trajectory, EventKind::impact);
+  const std::vector<Event> ends = of_kind(sim.trajectory, EventKind::contact_ends);
   REQUIRE(impacts.size() == 1);
   REQUIRE(ends.size() == 1);
   REQUIRE(ends[0].time == impacts[0].time);
@@ -91,8 +83,8 @@ TEST_CASE("what hops and slides is told to slide when its contact has begun", "[
           "[[body]]\nname = \"b\"\nentity = \"body\"\nhalf_extents = [0.5, 0.05, 0.5]\nmass = 1\n"
           "position = [0, 0.15, 0]\nvelocity = [5, 0, 0]\nrestitution = 0.5\n");
   REQUIRE(sim.result.status == RunStatus::completed);
-  const std::vector<Event> begins = of_kind(sim, EventKind::contact_begins);
-  const std::vector<Event> slips = of_kind(sim, EventKind::slip_begins);
+  const std::vector<Event> begins = of_kind(sim.trajectory, EventKind::contact_begins);
+  const std::vector<Event> slips = of_kind(sim.trajectory, EventKind::slip_begins);
   REQUIRE(begins.size() == 1);
   REQUIRE(slips.size() == 1);
   CHECK(begins[0].time <= slips[0].time);
@@ -120,7 +112,7 @@ TEST_CASE("what is handed on between bodies in touch is told to be set-valued", 
   const Simulation sim =
       run("duration = 0.5\nfriction = 0.2\n" + floor_body + body("low", brick, 0.1) +
           body("top", brick, 0.3) + body("ball", "radius = 0.1", 0.6));
-  const std::vector<Event> impacts = of_kind(sim, EventKind::impact);
+  const std::vector<Event> impacts = of_kind(sim.trajectory, EventKind::impact);
   REQUIRE(impacts.size() > 2);
   CHECK(impacts[0].flag == EventFlag::none);  // of the ball, alone
   CHECK(impacts[1].time == impacts[0].time);

@@ -5,6 +5,7 @@
 #include "simulation/registry.hpp"
 #include "simulation/simulate.hpp"
 #include "tests/catch.hpp"
+#include "tests/simulation/events.hpp"
 #include "tests/simulation/ledger_check.hpp"
 
 #include <cmath>
@@ -17,6 +18,7 @@
 // the order of bodies in a file changes no bit.
 
 using namespace kairos;
+using tests::of_kind;
 
 namespace {
 
@@ -27,16 +29,6 @@ Simulation run(const std::string& text, const std::string& integrator = "auto",
   RunChoice choice;
   choice.method = {"event-driven", integrator, "certified", law};
   return simulate(parse_scene(text, "test.toml"), choice);
-}
-
-std::vector<Event> of_kind(const Trajectory& trajectory, EventKind kind) {
-  std::vector<Event> found;
-  for (const Event& event : trajectory.events()) {
-    if (event.kind == kind) {
-      found.push_back(event);
-    }
-  }
-  return found;
 }
 
 const std::string floor_body = R"(

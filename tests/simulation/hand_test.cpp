@@ -8,6 +8,7 @@
 #include "simulation/registry.hpp"
 #include "simulation/simulate.hpp"
 #include "tests/catch.hpp"
+#include "tests/simulation/events.hpp"
 #include "tests/simulation/ledger_check.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -18,6 +19,7 @@
 #include <vector>
 
 using namespace kairos;
+using tests::of_kind;
 
 namespace {
 
@@ -73,13 +75,6 @@ std::vector<RunChoice> choices() {
         {.method = {std::string(scheme->info().name), "closed-form", "certified", "newton"}});
   }
   return result;
-}
-
-std::vector<Event> of_kind(const Trajectory& trajectory, EventKind kind) {
-  std::vector<Event> found;
-  std::copy_if(trajectory.events().begin(), trajectory.events().end(), std::back_inserter(found),
-               [kind](const Event& event) { return event.kind == kind; });
-  return found;
 }
 
 /// Remembers the drawn frames.

@@ -48,7 +48,7 @@ class Bits : public Recorder {
   void event(const Event& event) override {
     Archive bits;
     Event e = event;
-    bits(text_, e.time, e.a, e.b, e.contact.point, e.contact.normal, e.contact.gap,
+    bits(text_, e.time, e.bracket, e.a, e.b, e.contact.point, e.contact.normal, e.contact.gap,
          e.contact.restitution, e.contact.friction, e.before_a, e.after_a, e.before_b, e.after_b);
     text_ = fingerprint(bits.bytes());
     ++events;

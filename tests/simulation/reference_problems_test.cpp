@@ -6,6 +6,7 @@
 #include "simulation/scene_library.hpp"
 #include "simulation/simulate.hpp"
 #include "tests/catch.hpp"
+#include "tests/simulation/events.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -35,13 +36,7 @@ Simulation run(const std::string& name) {
 }
 
 std::vector<Event> impacts_of(const Simulation& sim) {
-  std::vector<Event> found;
-  for (const Event& event : sim.trajectory.events()) {
-    if (event.kind == EventKind::impact) {
-      found.push_back(event);
-    }
-  }
-  return found;
+  return tests::of_kind(sim.trajectory, EventKind::impact);
 }
 
 /// Times of impact against the scene's exact solution, relative; returns how many there were.

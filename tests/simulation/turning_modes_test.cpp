@@ -594,9 +594,13 @@ TEST_CASE("turning: an impulse in Painleve's case is told as such, and gives not
   const Simulation sim = run(text);
   check_whole(sim, text);
   std::set<double> told;
+  Instant changed = Instant::never();
   for (const Event& event : sim.trajectory.events()) {
     if (event.flag == EventFlag::painleve) {
       told.insert(event.time.seconds);
+      CHECK(changed != event.time);  // the impact first, then what comes of it
+    } else if (changes_contact(event.kind)) {
+      changed = event.time;
     }
   }
   CHECK(!told.empty());

@@ -26,6 +26,15 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// How often where a patch is pressed is put where the impulse that follows from that asks for.
 constexpr int most_presses = 32;
 
+/// An impact that has yet to be told of. No bracket: a step of bodies that turn ended in it.
+Event impact_in(BodyIndex a, BodyIndex b, Instant t, double bracket) {
+  Event event{.time = t, .kind = EventKind::impact, .a = a, .b = b};
+  if (bracket > 0.0) {
+    event.bracket = bracket;
+  }
+  return event;
+}
+
 /// Whether an impulse p goes through the middles of both, to roundoff: then it turns neither.
 bool is_along(const Vector3& p, const Pose& a, const Pose& b) {
   const Vector3 between = b.position - a.position;
@@ -110,7 +119,7 @@ bool EventContacts::impact_of_balls(BodyIndex a, BodyIndex b, Instant t, double 
   if (ball_a == nullptr || ball_b == nullptr) {
     return false;
   }
-  Event event{.time = t, .kind = EventKind::impact, .bracket = bracket, .a = a, .b = b};
+  Event event = impact_in(a, b, t, bracket);
   event.before_a = event.after_a = motions_.open_ball(a, *ball_a, t);
   event.before_b = event.after_b = motions_.open_ball(b, *ball_b, t);
   const Overlap o = ball_detector_->ball_overlap(event.before_a.pose.position, ball_a->radius,
@@ -157,10 +166,7 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double bracket, 
   if (run_.stopped()) {
     return depart(a, b, t);
   }
-  Event event{.time = t, .kind = EventKind::impact, .a = a, .b = b};
-  if (bracket > 0.0) {  // otherwise a step of bodies that turn ended in it
-    event.bracket = bracket;
-  }
+  Event event = impact_in(a, b, t, bracket);
   const auto landing = modes_.landing(a, b);
   event.contact = landing ? landing->contact : contact_at(a, b, t, bracket);
   const double approach = normal_velocity(event.contact, motions_.now(a), motions_.now(b));

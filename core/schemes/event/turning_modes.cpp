@@ -139,8 +139,8 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
   count_step(found, t);
   ++run_.cost.steps;
   run_.cost.right_hand_sides += turning.step.evaluations;
-  carry_on(found, turning, t, adopt);
   tell_jam(found, turning, t);
+  carry_on(found, turning, t, adopt);
   return true;
 }
 
@@ -380,7 +380,7 @@ void EventModes::let_jam(const Gathered& found, Turning& turning, double still) 
   }
 }
 
-/// Records an impact of each pair that an impulse stopped.
+/// Records an impact of each pair that an impulse stopped, before what comes of it.
 void EventModes::tell_jam(const Gathered& found, const Turning& turning, Instant t) {
   std::vector<char> told(found.pairs.size(), 0);
   for (std::size_t k = 0; k < turning.jammed.size(); ++k) {
@@ -397,10 +397,10 @@ void EventModes::tell_jam(const Gathered& found, const Turning& turning, Instant
     event.contact = {0.5 * (now.point_a + now.point_b), now.normal, now.gap};
     event.contact.restitution = run_.model.restitution(a, b);
     event.contact.friction = run_.model.friction(a, b);
-    event.before_a = found.states[at_a];
-    event.before_b = found.states[at_b];
-    event.after_a = motions_.now(a);
-    event.after_b = motions_.now(b);
+    event.before_a = event.after_a = found.states[at_a];
+    event.before_b = event.after_b = found.states[at_b];
+    event.after_a.twist = turning.mode.velocities[at_a];
+    event.after_b.twist = turning.mode.velocities[at_b];
     ++run_.cost.impacts;
     run_.note(event);
   }
