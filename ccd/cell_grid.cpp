@@ -98,9 +98,21 @@ CellLayout::CellLayout(const Model& model, double tolerance, const CellSize& ask
 
 CellGrid::CellGrid(const std::array<std::int64_t, 3>& counts,
                    const std::array<std::int64_t, 3>& first)
-    : count_(counts),
-      first_(first),
-      cells_(scattered<Cell>(static_cast<std::size_t>(counts[0] * counts[1] * counts[2]))) {}
+    : count_(counts), first_(first) {
+  std::size_t all = to_brick;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto n = static_cast<std::size_t>(counts[k]);
+    for (std::size_t c = 0; c < n + 2; ++c) {
+      along_[k].push_back((c % n) / 2 * all + ((c % n) % 2 << k));
+    }
+    all *= (n + 1) / 2;
+  }
+  cells_ = scattered<Cell>(all + to_brick);
+  reached_.resize(all);
+  constexpr std::size_t line = to_brick * sizeof(Cell);
+  const auto beyond = reinterpret_cast<std::uintptr_t>(cells_.data()) % line / sizeof(Cell);
+  begin_ = (to_brick - beyond) % to_brick;
+}
 
 void CellGrid::mark(const CellIndex& low, const CellIndex& high) {
   CellIndex from{};
@@ -112,174 +124,129 @@ void CellGrid::mark(const CellIndex& low, const CellIndex& high) {
   for (std::int64_t z = from[2]; z <= to[2]; ++z) {
     for (std::int64_t y = from[1]; y <= to[1]; ++y) {
       for (std::int64_t x = from[0]; x <= to[0]; ++x) {
-        cells_[at(x, y, z)].reached = 1;
+        reached_[place({first_[0] + x, first_[1] + y, first_[2] + z})] = true;
       }
     }
   }
+}
+
+CellGrid::Id CellGrid::make_link(Id body, Id next) {
+  Id fresh = free_;
+  if (fresh == none) {
+    fresh = static_cast<Id>(links_.size()) | no_body | is_chain;
+    links_.emplace_back();
+  } else {
+    free_ = link(fresh).next;
+  }
+  link(fresh) = {body, next};
+  return fresh;
+}
+
+CellGrid::Link CellGrid::take_link(Id x) {
+  const Link held = link(x);
+  link(x).next = free_;
+  free_ = x;
+  return held;
 }
 
 void CellGrid::insert(const CellIndex& cell, BodyIndex i) {
-  Cell* at = &cells_[place(cell[0], cell[1], cell[2])];
-  if (at->count == room) {
-    at = &with_room(*at);
-  }
-  at->bodies[at->count++] = static_cast<Id>(i);
-}
-
-/// The first of a chain of cells that has room.
-CellGrid::Cell& CellGrid::with_room(Cell& first) {
-  Id link = none;
-  for (Id next = first.next; next != none; next = chained_[next].next) {
-    link = next;
-    if (chained_[next].count < room) {
-      return chained_[next];
-    }
-  }
-  Id fresh = free_;
-  if (fresh == none) {
-    fresh = static_cast<Id>(chained_.size());
-    chained_.emplace_back();
+  const auto body = static_cast<Id>(i);
+  Cell& of = at(place(cell));
+  if (of.first == none) {
+    of.first = body;
+  } else if (of.second == none) {
+    of.second = body;
   } else {
-    free_ = chained_[fresh].next;
-    chained_[fresh] = {};
+    const Id rest = is_link(of.second) ? of.second : make_link(of.second, none);
+    of.second = make_link(body, rest);
   }
-  (link == none ? first : chained_[link]).next = fresh;
-  return chained_[fresh];
 }
 
-/// The last of the chain takes its place.
 void CellGrid::remove(const CellIndex& cell, BodyIndex i) {
-  Cell* last = &cells_[place(cell[0], cell[1], cell[2])];
-  Cell* before = nullptr;
-  Id* found = nullptr;
-  while (true) {
-    for (std::uint32_t k = 0; k < last->count; ++k) {
-      if (last->bodies[k] == i) {
-        found = &last->bodies[k];
-      }
-    }
-    if (last->next == none) {
-      break;
-    }
-    before = last;
-    last = &chained_[last->next];
+  Cell& of = at(place(cell));
+  if (!is_link(of.second)) {
+    of.first = of.first == i ? of.second : of.first;
+    of.second = none;
+    return;
   }
-  *found = last->bodies[--last->count];
-  if (last->count == 0 && before != nullptr) {
-    const Id empty = before->next;
-    before->next = none;
-    last->next = free_;
-    free_ = empty;
+  Id* found = &of.second;
+  if (of.first == i) {
+    of.first = link(*found).body;
+  } else {
+    while (link(*found).body != i) {
+      found = &link(*found).next;
+    }
+  }
+  *found = take_link(*found).next;
+  if (link(of.second).next == none) {  // one is left beside the first
+    of.second = take_link(of.second).body;
   }
 }
 
-/// Appends the bodies of a cell and of those chained to it.
-void CellGrid::append_chain(const Cell* cell, std::vector<Id>& out) const {
-  while (true) {
-    out.insert(out.end(), cell->bodies.begin(), cell->bodies.begin() + cell->count);
-    if (cell->next == none) {
-      return;
+void CellGrid::append(const Cell& cell, std::vector<Id>& out) const {
+  for (const Id x : {cell.first, cell.second}) {
+    if (is_link(x)) {
+      append_chain(x, out);
+    } else if (x != none) {
+      out.push_back(x);
     }
-    cell = &chained_[cell->next];
+  }
+}
+
+void CellGrid::append_chain(Id link_to, std::vector<Id>& out) const {
+  for (; link_to != none; link_to = link(link_to).next) {
+    out.push_back(link(link_to).body);
   }
 }
 
 void CellGrid::look_around(const CellIndex& cell) const {
-  const std::int64_t x = turned(cell[0] - 1, 0);
-  std::int64_t z = turned(cell[2] - 1, 2);
-  for (int dz = 0; dz < 3; ++dz, z = next(z, 2)) {
-    std::int64_t y = turned(cell[1] - 1, 1);
-    for (int dy = 0; dy < 3; ++dy, y = next(y, 1)) {
-      const std::size_t first = at(x, y, z);
-      prefetch(cells_[first]);
-      prefetch(cells_[std::min(first + 2, cells_.size() - 1)]);
+  const std::size_t* const x = along(cell[0] - 1, 0);
+  const std::size_t* const y = along(cell[1] - 1, 1);
+  const std::size_t* const z = along(cell[2] - 1, 2);
+  for (const std::size_t layer : {z[0], z[2]}) {
+    for (const std::size_t row : {layer + y[0], layer + y[2]}) {
+      prefetch(at(row + x[0]));
+      prefetch(at(row + x[2]));
     }
   }
 }
 
-void CellGrid::around(const CellIndex& cell, std::vector<Id>& out) const {
-  block(cell, {1, 1, 1}, out);
-}
-
-/// Bodies in the cells at most one along each axis from a cell: `wide` is 0 or 1.
-void CellGrid::block(const CellIndex& cell, const CellIndex& wide, std::vector<Id>& out) const {
-  constexpr std::size_t most_cells = 27;
-  CellIndex first{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    first[k] = turned(cell[k] - wide[k], k);
-  }
-  const std::size_t before = out.size();
-  out.resize(before + (most_cells + 1) * room);
-  Id* end = out.data() + before;
-  Id chains = none;
-  const auto take = [&end, &chains](const Cell& of) {
-    // Both places are copied, though most cells have none or one: this saves a branch.
-    std::memcpy(end, of.bodies.data(), sizeof of.bodies);
-    end += of.count;
-    chains &= of.next;
-  };
-  const auto turns_along = [&](std::size_t axis) {
-    return first[axis] + 2 * wide[axis] >= count_[axis];
-  };
-  const bool turns = turns_along(0);
-  if (!turns && !turns_along(1) && !turns_along(2)) {  // most blocks lie as their cells do
-    const Cell* layer = &cells_[at(first[0], first[1], first[2])];
-    const std::int64_t to_next_layer = count_[0] * count_[1];
-    for (std::int64_t dz = -wide[2]; dz <= wide[2]; ++dz, layer += to_next_layer) {
-      const Cell* row = layer;
-      for (std::int64_t dy = -wide[1]; dy <= wide[1]; ++dy, row += count_[0]) {
-        take(row[0]);
-        if (wide[0] != 0) {
-          take(row[1]);
-          take(row[2]);
-        }
-      }
-    }
-    out.resize(static_cast<std::size_t>(end - out.data()));
-    if (chains != none) {
-      append_chains(first, wide, out);
-    }
-    return;
-  }
-  std::int64_t z = first[2];
-  for (std::int64_t dz = -wide[2]; dz <= wide[2]; ++dz, z = next(z, 2)) {
-    std::int64_t y = first[1];
-    for (std::int64_t dy = -wide[1]; dy <= wide[1]; ++dy, y = next(y, 1)) {
-      const Cell* const row = &cells_[at(0, y, z)];
-      if (wide[0] == 0) {
-        take(row[first[0]]);
-      } else if (!turns) {
-        const Cell* const from = row + first[0];
-        take(from[0]);
-        take(from[1]);
-        take(from[2]);
-      } else {
-        std::int64_t x = first[0];
-        for (int dx = 0; dx < 3; ++dx, x = next(x, 0)) {
-          take(row[x]);
-        }
-      }
-    }
-  }
-  out.resize(static_cast<std::size_t>(end - out.data()));
-  if (chains != none) {
-    append_chains(first, wide, out);
-  }
-}
-
-/// Appends the bodies for which the cells of a block have no room.
-void CellGrid::append_chains(const CellIndex& first, const CellIndex& wide,
-                             std::vector<Id>& out) const {
+/// Shows the cells at most one along each axis from a cell: `wide` is 0 or 1.
+template <typename See>
+void CellGrid::see_block(const CellIndex& cell, const CellIndex& wide, const See& see) const {
+  const std::size_t* const x = along(cell[0] - wide[0], 0);
+  const std::size_t* const y = along(cell[1] - wide[1], 1);
+  const std::size_t* const z = along(cell[2] - wide[2], 2);
   for (std::int64_t dz = 0; dz <= 2 * wide[2]; ++dz) {
     for (std::int64_t dy = 0; dy <= 2 * wide[1]; ++dy) {
-      for (std::int64_t dx = 0; dx <= 2 * wide[0]; ++dx) {
-        const Cell& cell = cells_[at(beyond(first[0] + dx, 0), beyond(first[1] + dy, 1),
-                                     beyond(first[2] + dz, 2))];
-        if (cell.next != none) {
-          append_chain(&chained_[cell.next], out);
-        }
+      const Cell* const row = &at(y[dy] + z[dz]);
+      see(row[x[0]]);
+      if (wide[0] != 0) {
+        see(row[x[1]]);
+        see(row[x[2]]);
       }
     }
+  }
+}
+
+void CellGrid::block(const CellIndex& cell, const CellIndex& wide, std::vector<Id>& out) const {
+  constexpr std::size_t most_cells = 27;
+  std::array<Id, 2 * most_cells> found;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+  std::size_t count = 0;
+  Id all = 0;
+  see_block(cell, wide, [&found, &count, &all](const Cell& of) {
+    // Both are copied, though most cells have none or one: this saves a branch.
+    std::memcpy(&found[count], &of, sizeof of);
+    count += 2 - (of.first >> 31U) - (of.second >> 31U);
+    all |= of.second;
+  });
+  out.insert(out.end(), found.data(), found.data() + count);
+  if ((all & is_chain) != 0) {
+    see_block(cell, wide, [this, &out](const Cell& of) {
+      if (is_link(of.second)) {
+        append_chain(of.second, out);
+      }
+    });
   }
 }
 
@@ -303,7 +270,7 @@ void CellGrid::entered(const CellIndex& before, const CellIndex& now, std::vecto
     for (std::int64_t y = now[1] - 1; y <= now[1] + 1; ++y) {
       for (std::int64_t x = now[0] - 1; x <= now[0] + 1; ++x) {
         if (!(known(0, x) && known(1, y) && known(2, z))) {
-          append_chain(&cells_[place(x, y, z)], out);
+          append(at(place({x, y, z})), out);
         }
       }
     }
@@ -314,7 +281,7 @@ void CellGrid::within(const CellIndex& low, const CellIndex& high, std::vector<I
   for (std::int64_t z = low[2]; z <= high[2]; ++z) {
     for (std::int64_t y = low[1]; y <= high[1]; ++y) {
       for (std::int64_t x = low[0]; x <= high[0]; ++x) {
-        append_chain(&cells_[place(x, y, z)], out);
+        append(at(place({x, y, z})), out);
       }
     }
   }

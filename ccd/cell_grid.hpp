@@ -37,6 +37,9 @@ struct CellLayout {
 };
 
 /// Bodies by cell, on a torus: cells a whole number of turns apart are one.
+///
+/// A cell takes eight bytes, and two along each axis are a brick, a line of the cache: those around
+/// a cell are in eight bricks.
 class CellGrid {
  public:
   using Id = std::uint32_t;  ///< of a body
@@ -52,7 +55,7 @@ class CellGrid {
   /// Those are about to be asked for.
   void look_around(const CellIndex& cell) const;
   /// Bodies in the cell and its 26 neighbours, appended.
-  void around(const CellIndex& cell, std::vector<Id>& out) const;
+  void around(const CellIndex& cell, std::vector<Id>& out) const { block(cell, {1, 1, 1}, out); }
   /// Of those around `now`, the ones that are not around `before`.
   void entered(const CellIndex& before, const CellIndex& now, std::vector<Id>& out) const;
   /// Notes that something that is in no cell reaches these cells, as far as they lie where bodies
@@ -60,29 +63,42 @@ class CellGrid {
   void mark(const CellIndex& low, const CellIndex& high);
   /// Whether something may reach the cell.
   [[nodiscard]] bool may_be_reached(const CellIndex& cell) const {
-    std::array<std::int64_t, 3> at_home{};
+    std::size_t there = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      at_home[k] = cell[k] - first_[k];
-      if (!(static_cast<std::uint64_t>(at_home[k]) < static_cast<std::uint64_t>(count_[k]))) {
+      const std::int64_t at_home = cell[k] - first_[k];
+      if (!(static_cast<std::uint64_t>(at_home) < static_cast<std::uint64_t>(count_[k]))) {
         return true;
       }
+      there += along_[k][static_cast<std::size_t>(at_home)];
     }
-    return cells_[at(at_home[0], at_home[1], at_home[2])].reached != 0;
+    return reached_[there];
   }
 
   /// Bodies in all cells from `low` to `high`.
   void within(const CellIndex& low, const CellIndex& high, std::vector<Id>& out) const;
 
  private:
-  static constexpr Id none = ~Id{0};
-  static constexpr std::uint32_t room = 2;
-  /// Small, for most hold none or one. What finds no room is in a chain of further ones.
+  /// Bits that no body has: of what is none, and of a link to a chain of further bodies.
+  static constexpr Id no_body = Id{1} << 31U;
+  static constexpr Id is_chain = Id{1} << 30U;
+  static constexpr Id none = no_body;
+  /// Most hold none or one.
   struct Cell {
-    Id next = none;
-    std::uint16_t count = 0;
-    std::uint16_t reached = 0;  ///< see `mark`
-    std::array<Id, room> bodies{};
+    Id first = none;
+    Id second = none;  ///< or the link to all but the first, where there are more than two
   };
+  struct Link {
+    Id body = none;
+    Id next = none;  ///< as in a cell
+  };
+  static constexpr std::size_t to_brick = 8;  ///< cells
+
+  [[nodiscard]] static bool is_link(Id x) { return (x & is_chain) != 0; }
+  [[nodiscard]] Link& link(Id x) { return links_[x & ~(no_body | is_chain)]; }
+  [[nodiscard]] const Link& link(Id x) const { return links_[x & ~(no_body | is_chain)]; }
+  [[nodiscard]] Id make_link(Id body, Id next);
+  /// Gives it back; returns what it held.
+  Link take_link(Id x);
 
   /// Where cell c is along an axis of the torus.
   [[nodiscard]] std::int64_t turned(std::int64_t c, std::size_t axis) const {
@@ -93,30 +109,29 @@ class CellGrid {
     const std::int64_t rest = from % count_[axis];
     return rest < 0 ? rest + count_[axis] : rest;
   }
-  /// The cell after that, along an axis of the torus.
-  [[nodiscard]] std::int64_t next(std::int64_t turned, std::size_t axis) const {
-    return turned + 1 == count_[axis] ? 0 : turned + 1;
+  /// What that adds to the place of a cell, and after it what those that come next add.
+  [[nodiscard]] const std::size_t* along(std::int64_t c, std::size_t axis) const {
+    return &along_[axis][static_cast<std::size_t>(turned(c, axis))];
   }
-  /// The same of one that is less than a turn beyond the last.
-  [[nodiscard]] std::int64_t beyond(std::int64_t turned, std::size_t axis) const {
-    return turned < count_[axis] ? turned : turned - count_[axis];
+  [[nodiscard]] std::size_t place(const CellIndex& cell) const {
+    return *along(cell[0], 0) + *along(cell[1], 1) + *along(cell[2], 2);
   }
-  [[nodiscard]] std::size_t at(std::int64_t x, std::int64_t y, std::int64_t z) const {
-    return static_cast<std::size_t>((z * count_[1] + y) * count_[0] + x);
-  }
-  [[nodiscard]] std::size_t place(std::int64_t x, std::int64_t y, std::int64_t z) const {
-    return at(turned(x, 0), turned(y, 1), turned(z, 2));
-  }
-  Cell& with_room(Cell& first);
+  [[nodiscard]] const Cell& at(std::size_t place) const { return cells_[begin_ + place]; }
+  [[nodiscard]] Cell& at(std::size_t place) { return cells_[begin_ + place]; }
+  template <typename See>
+  void see_block(const CellIndex& cell, const CellIndex& wide, const See& see) const;
   void block(const CellIndex& cell, const CellIndex& wide, std::vector<Id>& out) const;
-  void append_chains(const CellIndex& first, const CellIndex& wide, std::vector<Id>& out) const;
-  void append_chain(const Cell* cell, std::vector<Id>& out) const;
+  void append(const Cell& cell, std::vector<Id>& out) const;
+  void append_chain(Id link, std::vector<Id>& out) const;
 
   std::array<std::int64_t, 3> count_{};
   std::array<std::int64_t, 3> first_{};
+  std::array<std::vector<std::size_t>, 3> along_;  ///< by cell, and of the first two once more
   std::vector<Cell> cells_;
-  std::vector<Cell> chained_;
-  Id free_ = none;
+  std::size_t begin_ = 0;      ///< of them, where the first brick is a line of the cache
+  std::vector<bool> reached_;  ///< see `mark`
+  std::vector<Link> links_;
+  Id free_ = none;  ///< a link that nobody needs, and so on
 };
 
 }  // namespace kairos::ccd

@@ -3,6 +3,7 @@
 #include "core/instant.hpp"
 #include "core/pose.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -49,26 +50,38 @@ class FlightsBeside {
   /// One more.
   void add(const BallFlight& other) {
     const std::size_t k = size_ % block;
-    add_alike(other.position, other.velocity, other.start);
+    add_alike(other);
     Block& to = blocks_[(size_ - 1) / block];
     to.radius[k] = other.radius;
     to.comparable[k] = one_->acceleration == other.acceleration ? 1.0 : 0.0;
   }
 
   /// One more that is as large as the one, and accelerated as it is.
-  void add_alike(const Vector3& position, const Vector3& velocity, const Instant& start) {
-    const std::size_t k = size_ % block;
-    const std::size_t number = size_ / block;
-    if (number == blocks_.size()) {
-      blocks_.emplace_back();
+  void add_alike(const BallFlight& other) {
+    add_alike(1, [&other](std::size_t /*k*/) -> const BallFlight& { return other; });
+  }
+  /// So many more of that kind at once: `thrown(k)` has position, velocity and start of one.
+  template <typename Thrown>
+  void add_alike(std::size_t count, const Thrown& thrown) {
+    const Instant start = one_->start;
+    for (std::size_t done = 0; done < count;) {
+      const std::size_t number = size_ / block;
+      if (number == blocks_.size()) {
+        blocks_.emplace_back();
+      }
+      Block& to = blocks_[number];
+      const std::size_t first = size_ % block;
+      const std::size_t end = std::min(block, first + (count - done));
+      for (std::size_t k = first; k < end; ++k, ++done) {
+        const auto& other = thrown(done);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          to.position[axis][k] = other.position.data()[axis];
+          to.velocity[axis][k] = other.velocity.data()[axis];
+        }
+        to.lag[k] = other.start - start;
+      }
+      size_ += end - first;
     }
-    ++size_;
-    Block& to = blocks_[number];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      to.position[axis][k] = position.data()[axis];
-      to.velocity[axis][k] = velocity.data()[axis];
-    }
-    to.lag[k] = start - one_->start;
   }
 
   /// Whether what is told of their radii and of how they are accelerated is that of the one.

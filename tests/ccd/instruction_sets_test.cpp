@@ -94,7 +94,7 @@ TEST_CASE("balls are let through alike by registers of all widths", "[instructio
     FlightsBeside beside;
     alike ? beside.begin_alike(one) : beside.begin(one);
     for (const BallFlight& other : others) {
-      alike ? beside.add_alike(other.position, other.velocity, other.start) : beside.add(other);
+      alike ? beside.add_alike(other) : beside.add(other);
     }
     std::vector<double> expected(beside.blocks().size() * FlightsBeside::block);
     std::vector<double> found(expected.size());

@@ -319,7 +319,7 @@ TEST_CASE("balls are clear of each other as long as they are said to be", "[broa
     if (alike) {
       b.radius = a.radius;
       beside.begin_alike(a);
-      beside.add_alike(b.position, b.velocity, b.start);
+      beside.add_alike(b);
     } else {
       beside.begin(a);
       beside.add(b);

@@ -88,7 +88,7 @@ class Agenda : private EventCalendar::Source {
     }
   }
   /// What is known of body i is about to be asked for.
-  void look_up(BodyIndex i) const { prefetch(records_[i]); }
+  void look_up(std::uint32_t i) const override { prefetch(records_[i]); }
 
   /// Body i meets b then; kept if it is the earliest that is known of i.
   void meet(BodyIndex i, BodyIndex b, Instant t, double bracket);

@@ -14,7 +14,9 @@ inline namespace core {
 /// Which body is due next: a calendar queue [Brown1988] of one entry a body.
 ///
 /// Days hold some eight entries each, in the order in which they were made; only those of today are
-/// in a heap. An entry is put off by making another: older ones of the body are passed over.
+/// in a heap. What is due in another week is sorted by days when that begins: weeks are so few that
+/// where each of them ends stays in the cache, days are not. An entry is put off by making another:
+/// older ones of the body are passed over.
 /// Entries at the same instant come in the order of their keys. What a calendar costs does not
 /// depend on how many bodies there are; the length of its days adapts. Who is due when is not kept
 /// here: a *source* tells it again when the day comes.
@@ -33,6 +35,8 @@ class EventCalendar {
    public:
     /// As it was put last; its stamp means nothing.
     [[nodiscard]] virtual Entry due(std::uint32_t body) const = 0;
+    /// That is about to be asked for.
+    virtual void look_up(std::uint32_t /*body*/) const {}
 
    protected:
     ~Source() = default;
@@ -56,12 +60,13 @@ class EventCalendar {
   struct Slip {
     std::uint32_t body = 0;
     std::uint32_t stamp = 0;
+    std::uint32_t day = 0;  ///< of its week, if it is filed
   };
   static constexpr std::uint32_t none = ~std::uint32_t{0};
-  /// Some slips of a day, and where more of them are: a line of the cache. Days that are over leave
-  /// theirs to others.
-  struct Page {
-    std::array<Slip, 7> slips{};
+  /// Some slips of a day or of a week, and where more of them are: two lines of the cache. Those
+  /// that are over leave theirs to others.
+  struct alignas(64) Page {
+    std::array<Slip, 10> slips{};
     std::uint32_t count = 0;
     std::uint32_t next = none;
   };
@@ -73,21 +78,27 @@ class EventCalendar {
   }
   [[nodiscard]] Entry entry_of(const Source& source, const Slip& slip) const;
   void file(const Slip& slip, Instant time, const Source& source);
-  void note(std::uint32_t& day, const Slip& slip);
+  void note(std::uint32_t& in, const Slip& slip);
   template <typename See>
-  void tear_off(std::uint32_t& day, const See& see);
+  void tear_off(std::uint32_t& from, const See& see);
+  [[nodiscard]] std::size_t days_ahead() const { return weeks_.size() * days_.size(); }
+  void begin_week(std::int64_t week);
   void file_far(const Source& source);
   void begin_next_day(const Source& source);
+  void look_ahead(const Source& source) const;
   void renew(const Source& source);
 
   std::vector<std::uint32_t> latest_;  ///< stamps, by body
   std::vector<Entry> today_;           ///< a heap, the earliest first
-  std::vector<std::uint32_t> days_;    ///< the next ones, a ring: the first page of each; or none
+  std::vector<std::uint32_t> days_;    ///< of this week: the first page of each; or none
+  std::vector<std::uint32_t> weeks_;   ///< the next ones, a ring: the same
   std::vector<Page> pages_;
   std::uint32_t free_ = none;  ///< a page that nobody needs, and so on
-  std::vector<Slip> far_;      ///< beyond those days
-  std::size_t filed_ = 0;      ///< in `days_`
+  std::vector<Slip> far_;      ///< beyond those weeks
+  std::size_t filed_ = 0;      ///< in `days_` and `weeks_`
   std::int64_t day_ = 0;       ///< today's number
+  std::int64_t week_ = 0;      ///< this week's
+  int to_week_ = 0;            ///< a week has two to the power of this days
   std::uint64_t days_begun_ = 0;
   std::int64_t check_ = 0;  ///< the day on which `far_` is looked through again
   std::size_t taken_ = 0;   ///< entries that became today's since the last such day

@@ -143,8 +143,7 @@ bool EventContacts::impact_of_balls(BodyIndex a, BodyIndex b, Instant t, double 
   if (parts && accumulation_.go_on_for_sure(rebound)) {
     motions_.launch_ball(a, *ball_a, event.after_a, t);
     motions_.launch_ball(b, *ball_b, event.after_b, t);
-    predictor_.predict(a, t);
-    predictor_.predict(b, t, a);
+    predictor_.predict_struck(a, b, t);
     return true;
   }
   motions_.now(a) = event.after_a;

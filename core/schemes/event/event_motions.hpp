@@ -54,8 +54,10 @@ class EventMotions {
   [[nodiscard]] bool is_usual(BodyIndex i) const {
     return (ways_[i] & (all_bits | usual_bit)) == (all_bits | usual_bit);
   }
-  /// Its flight, beside that of another such ball.
-  void add_usual(BodyIndex i, FlightsBeside& beside) const { table_.add_usual(i, beside); }
+  /// The flights of such balls, beside that of another.
+  void add_usual(std::span<const std::uint32_t> balls, FlightsBeside& beside) const {
+    table_.add_usual(balls, beside);
+  }
   /// The ball that bounds body i, on its way; its radius is infinite if it is on no parabola, or
   /// the body is unbounded.
   [[nodiscard]] BallFlight flight(BodyIndex i) const {

@@ -54,11 +54,44 @@ void EventPredictor::predict(BodyIndex i, Instant t, BodyIndex except) {
   themselves_.clear();
   neighbours_.clear();
   neighbourhood_->near_apart(i, themselves_, neighbours_);
+  survey_all(i, except);
+}
+
+/// Asks about all that are near i but `except`.
+void EventPredictor::survey_all(BodyIndex i, BodyIndex except) {
   // Of its images the others have not been asked about: it had not entered yet.
   std::erase_if(neighbours_,
                 [except](const Neighbour& j) { return j.body == except && is_zero(j.image); });
   survey(i, before_all, except);
   run_.agenda.file(i);
+}
+
+void EventPredictor::predict_struck(BodyIndex a, BodyIndex b, Instant t) {
+  if (!neighbourhood_ || !only_motions_) {
+    predict(a, t);
+    return predict(b, t, a);
+  }
+  const auto turn_to_other = [this] {
+    themselves_.swap(themselves_of_other_);
+    neighbours_.swap(neighbours_of_other_);
+  };
+  for (const BodyIndex i : {b, a}) {
+    turn_to_other();
+    since_[i] = t;
+    if constexpr (watches_jumps) {
+      run_.jumps.predicted(i);
+    }
+    enter(i, t);
+    themselves_.clear();
+    neighbours_.clear();
+    neighbourhood_->near_apart(i, themselves_, neighbours_);
+    for (const std::uint32_t j : themselves_) {
+      motions_.look_up(j);  // it is fetched while others are asked about
+    }
+  }
+  survey_all(a, a);
+  turn_to_other();
+  survey_all(b, a);
 }
 
 void EventPredictor::predict_island(BodyIndex i, Instant t) {
@@ -201,23 +234,24 @@ void EventPredictor::survey_usual(BodyIndex i, Instant known, BodyIndex except) 
     usual_.resize(themselves_.size());
   }
   std::size_t count = 0;
+  std::size_t others = 0;
   for (const std::uint32_t j : themselves_) {
     // Each is written, and some are written over: which ones, no processor would guess.
     usual_[count] = j;
+    themselves_[others] = j;
     motions_.look_up(j);
     const bool other = (j != i) & (j != except);
     const bool is_usual = motions_.is_usual(j);
     count += static_cast<std::size_t>(other & is_usual);
-    if (other & !is_usual) {
-      neighbours_.push_back({j});
-    }
+    others += static_cast<std::size_t>(other & !is_usual);
+  }
+  for (std::size_t k = 0; k < others; ++k) {
+    neighbours_.push_back({themselves_[k]});
   }
   if (count == 0) {
     return;
   }
-  for (std::size_t k = 0; k < count; ++k) {
-    motions_.add_usual(usual_[k], beside_);
-  }
+  motions_.add_usual({usual_.data(), count}, beside_);
   filter_beside();
   near_.clear();
   for (std::size_t k = 0; k < count; ++k) {

@@ -34,6 +34,9 @@ class EventPredictor {
   void predict(BodyIndex i, Instant t) { predict(i, t, i); }
   /// All pairs of i but that with `except`, as it is itself and not as an image.
   void predict(BodyIndex i, Instant t, BodyIndex except);
+  /// `predict` of a, and of b but with a, where both fly on alone: who is near b is fetched while a
+  /// is predicted, and the other way round.
+  void predict_struck(BodyIndex a, BodyIndex b, Instant t);
   /// All pairs of all bodies of the island of i, which was launched at t.
   void predict_island(BodyIndex i, Instant t);
   /// Body i, which moves as before, comes near others.
@@ -102,6 +105,7 @@ class EventPredictor {
   }
   void enter(BodyIndex i, Instant t);
   void predict_near(BodyIndex i, const Neighbour& j, Instant known = before_all);
+  void survey_all(BodyIndex i, BodyIndex except);
   void survey(BodyIndex i, Instant known) { survey(i, known, i); }
   void survey(BodyIndex i, Instant known, BodyIndex except);
   void survey_usual(BodyIndex i, Instant known, BodyIndex except);
@@ -152,6 +156,8 @@ class EventPredictor {
   bool bounds_hold_ = false;               ///< a detector tells no contact before there is one
   std::vector<std::uint32_t> themselves_;  ///< scratch, as what follows
   std::vector<Neighbour> neighbours_;
+  std::vector<std::uint32_t> themselves_of_other_;
+  std::vector<Neighbour> neighbours_of_other_;
   std::vector<std::uint32_t> usual_;  ///< as long as it has had to be
   std::vector<Neighbour> balls_;
   BallFlight own_;

@@ -65,7 +65,7 @@ void EventWorld::take() {
 void EventWorld::look_ahead() {
   run_.agenda.see_day([this](BodyIndex a, BodyIndex b) {
     for (const BodyIndex i : {a, b}) {
-      run_.agenda.look_up(i);
+      run_.agenda.look_up(static_cast<std::uint32_t>(i));
       motions_.look_up_all(i);
       predictor_.look_up(i);
       contacts_.look_up(i);

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -63,9 +64,12 @@ class MotionTable {
   [[nodiscard]] BallFlight usual_flight(BodyIndex i) const { return of(throws_[i], usual_); }
   [[nodiscard]] Instant start_of_flight(BodyIndex i) const { return throws_[i].start; }
   [[nodiscard]] const Vector3& usual_acceleration() const { return usual_.acceleration; }
-  /// The flight of such a body, beside one of such a body.
-  void add_usual(BodyIndex i, FlightsBeside& beside) const {
-    beside.add_alike(throws_[i].position, throws_[i].velocity, throws_[i].start);
+  /// The flights of such bodies, beside one of such a body.
+  void add_usual(std::span<const std::uint32_t> bodies, FlightsBeside& beside) const {
+    beside.add_alike(bodies.size(),
+                     [bodies, throws = throws_.data()](std::size_t k) -> const Throw& {
+                       return throws[bodies[k]];
+                     });
   }
   /// The flight of body i is about to be asked for.
   void look_up(BodyIndex i) const { prefetch(throws_[i]); }
