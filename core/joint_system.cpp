@@ -380,10 +380,35 @@ JointProjection JointSystem::project_velocities(Instant t, std::span<BodyState> 
 
 double JointSystem::pass_on(Instant t, std::span<const BodyState> states,
                             std::span<Twist> changes) const {
-  static const Twist none;
   Workspace& work = workspace();
   evaluate(t, states, work);
   factor(states, work);
+  return pass_on(changes, work);
+}
+
+Eigen::MatrixXd JointSystem::passing(Instant t, std::span<const BodyState> states) const {
+  Workspace& work = workspace();
+  evaluate(t, states, work);
+  factor(states, work);
+  const auto n = static_cast<Eigen::Index>(6 * states.size());
+  Eigen::MatrixXd leaves(n, n);
+  std::vector<Twist> changes;
+  for (Eigen::Index c = 0; c < n; ++c) {
+    changes.assign(states.size(), Twist{});
+    Twist& of_one = changes[static_cast<std::size_t>(c / 6)];
+    (c % 6 < 3 ? of_one.linear : of_one.angular)[c % 3] = 1.0;
+    (void)pass_on(changes, work);
+    for (std::size_t k = 0; k < changes.size(); ++k) {
+      leaves.block<3, 1>(static_cast<Eigen::Index>(6 * k), c) = changes[k].linear;
+      leaves.block<3, 1>(static_cast<Eigen::Index>(6 * k + 3), c) = changes[k].angular;
+    }
+  }
+  return leaves;
+}
+
+/// With the workspace's rows, which are factored.
+double JointSystem::pass_on(std::span<Twist> changes, Workspace& work) const {
+  static const Twist none;
   work.b.resize(work.size());
   double driven = 0.0;
   const auto change = [&](std::size_t place) -> const Twist& {

@@ -4,6 +4,8 @@
 #include "core/force.hpp"
 #include "core/joint.hpp"
 
+#include <Eigen/Core>
+
 #include <memory>
 #include <span>
 #include <vector>
@@ -67,6 +69,10 @@ class JointSystem {
   void multipliers(Instant t, std::span<const BodyState> states, std::span<const Wrench> wrenches,
                    std::span<double> x) const;
 
+  /// What `pass_on` makes of changes of velocity, as a matrix: six rows and columns for each body,
+  /// its linear part first.
+  [[nodiscard]] Eigen::MatrixXd passing(Instant t, std::span<const BodyState> states) const;
+
   /// Changes of velocity by impulses, one per body: replaces those without joints by those that are
   /// left when the joints have passed the impulses on. Returns the work of driven sides, J.
   double pass_on(Instant t, std::span<const BodyState> states, std::span<Twist> changes) const;
@@ -74,6 +80,7 @@ class JointSystem {
  private:
   struct Workspace;
   static Workspace& workspace();
+  double pass_on(std::span<Twist> changes, Workspace& work) const;
   void evaluate(Instant t, std::span<const BodyState> states, Workspace& work) const;
   void factor(std::span<const BodyState> states, Workspace& work) const;
   [[nodiscard]] double tolerance(std::span<const BodyState> states) const;

@@ -43,7 +43,7 @@ std::vector<Vector3> rays(const PushPoint& p) {
 
 double pulled(const std::vector<GroupBody>& bodies, std::span<const double> radius,
               std::span<const PushPoint> points, std::span<const Twist> before,
-              std::span<const Twist> after) {
+              std::span<const Twist> after, const GroupJoints* joints) {
   std::vector<Index> row(bodies.size(), -1);
   Index rows = 0;
   for (std::size_t k = 0; k < bodies.size(); ++k) {
@@ -63,8 +63,25 @@ double pulled(const std::vector<GroupBody>& bodies, std::span<const double> radi
   for (const PushPoint& p : points) {
     for (const Vector3& direction : rays(p)) {
       VectorXd column = VectorXd::Zero(rows);
+      if (joints != nullptr) {
+        VectorXd given = VectorXd::Zero(static_cast<Index>(6 * bodies.size()));
+        for (const auto& [k, sign] : std::array{std::pair{p.a, -1.0}, std::pair{p.b, 1.0}}) {
+          const auto at = static_cast<Index>(6 * k);
+          given.segment<3>(at) = sign * bodies[k].inverse_mass * direction;
+          given.segment<3>(at + 3) =
+              sign * (bodies[k].inverse_inertia * (p.point - bodies[k].position).cross(direction));
+        }
+        joints->pass_on(given);
+        for (std::size_t k = 0; k < bodies.size(); ++k) {
+          if (row[k] >= 0) {
+            const auto at = static_cast<Index>(6 * k);
+            column.segment<3>(row[k]) = given.segment<3>(at);
+            column.segment<3>(row[k] + 3) = radius[k] * given.segment<3>(at + 3);
+          }
+        }
+      }
       for (const auto& [k, sign] : std::array{std::pair{p.a, -1.0}, std::pair{p.b, 1.0}}) {
-        if (row[k] < 0) {
+        if (row[k] < 0 || joints != nullptr) {
           continue;
         }
         const GroupBody& body = bodies[k];

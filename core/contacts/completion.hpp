@@ -23,7 +23,7 @@ struct PushPoint {
 /// their friction cones.
 [[nodiscard]] double pulled(const std::vector<GroupBody>& bodies, std::span<const double> radius,
                             std::span<const PushPoint> points, std::span<const Twist> before,
-                            std::span<const Twist> after);
+                            std::span<const Twist> after, const GroupJoints* joints = nullptr);
 
 }  // namespace core
 }  // namespace kairos

@@ -26,7 +26,44 @@ void ContactSystem::add(std::size_t a, std::size_t b, const Vector3& point,
   rows.push_back({a, b, direction, point - bodies[a].position, point - bodies[b].position});
 }
 
+std::pair<Eigen::VectorXd, Eigen::VectorXd> ContactSystem::passed(const ContactRow& row) const {
+  const auto n = static_cast<Eigen::Index>(6 * bodies.size());
+  std::pair<Eigen::VectorXd, Eigen::VectorXd> out{Eigen::VectorXd::Zero(n),
+                                                  Eigen::VectorXd::Zero(n)};
+  const auto side = [&](std::size_t i, const Vector3& arm, double sign) {
+    const auto at = static_cast<Eigen::Index>(6 * i);
+    const Vector3 moment = arm.cross(row.direction);
+    out.first.segment<3>(at) += sign * row.direction;
+    out.first.segment<3>(at + 3) += sign * moment;
+    out.second.segment<3>(at) += sign * bodies[i].inverse_mass * row.direction;
+    out.second.segment<3>(at + 3) += sign * (bodies[i].inverse_inertia * moment);
+  };
+  side(row.a, row.arm_a, -1.0);
+  side(row.b, row.arm_b, 1.0);
+  joints->pass_on(out.first, out.second);
+  return out;
+}
+
+Eigen::MatrixXd ContactSystem::coupling_through_joints() const {
+  const auto n = static_cast<Eigen::Index>(rows.size());
+  std::vector<std::pair<Eigen::VectorXd, Eigen::VectorXd>> of_rows;
+  for (const ContactRow& row : rows) {
+    of_rows.push_back(passed(row));
+  }
+  Eigen::MatrixXd W(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index k = i; k < n; ++k) {
+      W(i, k) = W(k, i) = of_rows[static_cast<std::size_t>(i)].first.dot(
+          of_rows[static_cast<std::size_t>(k)].second);
+    }
+  }
+  return W;
+}
+
 Eigen::MatrixXd ContactSystem::coupling() const {
+  if (joints != nullptr) {
+    return coupling_through_joints();
+  }
   const auto n = static_cast<Eigen::Index>(rows.size());
   Eigen::MatrixXd W = Eigen::MatrixXd::Zero(n, n);
   const auto felt = [this](std::size_t body, const Vector3& arm_i, const Vector3& d_i,
@@ -68,6 +105,14 @@ Eigen::VectorXd ContactSystem::rates(const std::vector<Twist>& v) const {
 void ContactSystem::push(const Eigen::VectorXd& impulses, std::vector<Twist>& v) const {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const ContactRow& row = rows[i];
+    if (joints != nullptr) {
+      const Eigen::VectorXd given = impulses[static_cast<Eigen::Index>(i)] * passed(row).second;
+      for (std::size_t k = 0; k < bodies.size(); ++k) {
+        v[k].linear += given.segment<3>(static_cast<Eigen::Index>(6 * k));
+        v[k].angular += given.segment<3>(static_cast<Eigen::Index>(6 * k + 3));
+      }
+      continue;
+    }
     const Vector3 p = row.direction * impulses[static_cast<Eigen::Index>(i)];
     v[row.a].linear -= bodies[row.a].inverse_mass * p;
     v[row.a].angular -= bodies[row.a].inverse_inertia * row.arm_a.cross(p);

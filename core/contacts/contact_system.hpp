@@ -1,9 +1,12 @@
 #pragma once
 
+#include "core/contacts/group_joints.hpp"
 #include "core/force.hpp"
 
 #include <Eigen/Core>
 
+#include <memory>
+#include <utility>
 #include <vector>
 
 namespace kairos {
@@ -36,6 +39,8 @@ struct ContactRow {
 struct ContactSystem {
   std::vector<GroupBody> bodies;
   std::vector<ContactRow> rows;
+  /// They pass on what the rows do; null: none.
+  std::shared_ptr<const GroupJoints> joints{};
 
   void add(std::size_t a, std::size_t b, const Vector3& point, const Vector3& direction);
   /// J M^-1 J^T: what a unit impulse of a row does to the rates of all, 1/kg.
@@ -51,6 +56,11 @@ struct ContactSystem {
   /// Undoes a change of linear velocities (from `before` to `v`) for bodies that it moves along a
   /// row faster than before, unless the difference is a small part of their speed.
   void undo_where_faster(const std::vector<Twist>& before, std::vector<Twist>& v) const;
+
+ private:
+  /// Of a row among joints, six numbers for each body: J, and M^-1 J^T as joints pass it on.
+  [[nodiscard]] std::pair<Eigen::VectorXd, Eigen::VectorXd> passed(const ContactRow& row) const;
+  [[nodiscard]] Eigen::MatrixXd coupling_through_joints() const;
 };
 
 }  // namespace core

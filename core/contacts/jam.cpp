@@ -37,7 +37,7 @@ class Jams {
         rows[axis] = {touch.a, touch.b, d, now_.back().point_a - state.bodies[touch.a].position,
                       now_.back().point_b - state.bodies[touch.b].position};
       }
-      local_.push_back({state.bodies, {rows.begin(), rows.end()}});
+      local_.push_back({state.bodies, {rows.begin(), rows.end()}, state.joints});
       coupling_.push_back(local_.back().coupling());
     }
   }
@@ -79,7 +79,7 @@ class Jams {
     if (mu == 0.0 || !(slip(k).norm() > still_)) {
       return false;
     }
-    ContactSystem held{state_.bodies, {}};
+    ContactSystem held{state_.bodies, {}, state_.joints};
     for (std::size_t j = 0; j < state_.touches.size() && others_held; ++j) {
       const bool sticks = state_.touches[j].friction > 0.0 && !(slip(j).norm() > still_);
       for (std::size_t axis = 0; j != k && axis < (sticks ? 3U : 1U); ++axis) {
@@ -89,7 +89,7 @@ class Jams {
     ContactRow push = local_[k].rows[0];
     push.direction = now_[k].normal - mu * slip(k).normalized();
     std::vector<Twist> v(state_.bodies.size());
-    ContactSystem{state_.bodies, {push}}.push(Eigen::VectorXd::Ones(1), v);
+    ContactSystem{state_.bodies, {push}, state_.joints}.push(Eigen::VectorXd::Ones(1), v);
     if (!held.rows.empty()) {
       held.project(v);
     }
@@ -105,6 +105,9 @@ class Jams {
       double changed = 0.0;
       for (std::size_t k = 0; k < n; ++k) {
         const Matrix3 W = coupling_[k];
+        if (W(0, 0) == 0.0) {
+          continue;  // joints block it
+        }
         Vector3 q = Vector3(local_[k].rates(found.velocities)) - W * impulse[k];
         q.x() -= more;
         const Vector3 now = coulomb_impulse(W, q, friction(k));

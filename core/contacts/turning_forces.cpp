@@ -74,7 +74,7 @@ bool rubs(const FrictionChoice& c) { return c.does == Does::slides || c.does == 
 
 }  // namespace
 
-TurningForces::TurningForces(const TurningState& state) : state_(state) {
+TurningForces::TurningForces(const TurningState& state) : state_(state), load_(state.applied) {
   for (std::size_t i = 0; i < state.bodies.size(); ++i) {
     free_ += moves(state.bodies[i]) ? 1 : 0;
     load_ = std::max(
@@ -95,7 +95,7 @@ TurningForces::TurningForces(const TurningState& state) : state_(state) {
 
 TurningForces::Line TurningForces::line(std::size_t k, const Vector3& d) const {
   const Touch& touch = state_.touches[k];
-  Line out{k, d, {}, {}, {}, {}};
+  Line out{k, d, {}, {}, {}, {}, {}};
   const auto side = [&](std::size_t i, const Vector3& point, double sign, Vector6& asks,
                         Vector6& gives) {
     const GroupBody& body = state_.bodies[i];
@@ -107,6 +107,16 @@ TurningForces::Line TurningForces::line(std::size_t k, const Vector3& d) const {
   };
   side(touch.a, now_[k].point_a, -1.0, out.of_a, out.to_a);
   side(touch.b, now_[k].point_b, 1.0, out.of_b, out.to_b);
+  if (state_.joints != nullptr) {
+    const auto at = [](std::size_t i) { return static_cast<Index>(6 * i); };
+    VectorXd asks = VectorXd::Zero(at(state_.bodies.size()));
+    out.to_all = asks;
+    asks.segment<6>(at(touch.a)) = out.of_a;
+    asks.segment<6>(at(touch.b)) = out.of_b;
+    out.to_all.segment<6>(at(touch.a)) = out.to_a;
+    out.to_all.segment<6>(at(touch.b)) = out.to_b;
+    state_.joints->pass_on(asks, out.to_all);
+  }
   return out;
 }
 
@@ -135,6 +145,12 @@ double TurningForces::coupling(const Line& asks, const Line& gives) const {
   const Touch& r = state_.touches[asks.touch];
   const Touch& s = state_.touches[gives.touch];
   double sum = 0.0;
+  if (state_.joints != nullptr) {
+    const auto of = [&](std::size_t i) {
+      return gives.to_all.segment<6>(static_cast<Index>(6 * i));
+    };
+    return asks.of_a.dot(of(r.a)) + asks.of_b.dot(of(r.b));
+  }
   if (r.a == s.a) sum += asks.of_a.dot(gives.to_a);
   if (r.a == s.b) sum += asks.of_a.dot(gives.to_b);
   if (r.b == s.a) sum += asks.of_b.dot(gives.to_a);
@@ -144,6 +160,13 @@ double TurningForces::coupling(const Line& asks, const Line& gives) const {
 
 void TurningForces::push(const Line& line, double force, std::vector<Twist>& v) const {
   const Touch& touch = state_.touches[line.touch];
+  if (state_.joints != nullptr) {
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      v[i].linear += force * line.to_all.segment<3>(static_cast<Index>(6 * i));
+      v[i].angular += force * line.to_all.segment<3>(static_cast<Index>(6 * i + 3));
+    }
+    return;
+  }
   v[touch.a].linear += force * line.to_a.head<3>();
   v[touch.a].angular += force * line.to_a.tail<3>();
   v[touch.b].linear += force * line.to_b.head<3>();
@@ -281,8 +304,14 @@ TurningForces::Rays TurningForces::rays_of(std::span<const FrictionChoice> choic
       A.block<3, 1>(at, column) += gives.head<3>();
       A.block<3, 1>(at + 3, column) += state_.radius[i] * gives.tail<3>();
     };
-    place(touch.a, rays[c].to_a);
-    place(touch.b, rays[c].to_b);
+    if (state_.joints != nullptr) {
+      for (std::size_t i = 0; i < state_.bodies.size(); ++i) {
+        place(i, rays[c].to_all.segment<6>(static_cast<Index>(6 * i)));
+      }
+    } else {
+      place(touch.a, rays[c].to_a);
+      place(touch.b, rays[c].to_b);
+    }
     out.length.push_back(std::max(A.col(column).norm(), 1e-300));
     A.col(column) /= out.length.back();
   }
@@ -392,6 +421,9 @@ void TurningForces::sweep(std::size_t k, const FrictionChoice& as_is, std::array
                           std::vector<Twist>& v) const {
   const double mu = state_.touches[k].friction;
   const double before = force[0];
+  if (weight_[k] == 0.0) {
+    return;  // joints block it
+  }
   force[0] = std::max(0.0, before - gap_acceleration(k, v) / weight_[k]);
   push(lines_[k][0], force[0] - before, v);
   if (mu == 0.0) {
@@ -479,6 +511,11 @@ std::vector<FrictionChoice> TurningForces::complementary(std::span<const Frictio
     const auto all = static_cast<Index>(lines.size());
     MatrixXd K = couplings(lines, lines);
     VectorXd q = loads_along(lines);
+    for (std::size_t k = 0; k < n; ++k) {
+      if (weight_[k] == 0.0) {
+        q[static_cast<Index>(k)] = 0.0;  // joints block it: what is left is roundoff
+      }
+    }
     ++solves_;
     const Index tangents = all - rows;
     Eigen::CompleteOrthogonalDecomposition<MatrixXd> held;

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,9 @@ struct TurningState {
   std::vector<Twist> loads;    ///< accelerations without contact forces
   std::vector<double> radius;  ///< how far a body reaches from its origin, m
   std::vector<Touch> touches;
+  /// They pass on what touches do; null: none. `loads` are with them.
+  std::shared_ptr<const GroupJoints> joints{};
+  double applied = 0.0;  ///< the largest acceleration that joints took up, m/s^2
 };
 
 /// Contact forces of bodies that turn: of touches that are told what they do.
@@ -85,6 +89,8 @@ class TurningForces {
     Vector3 direction;
     Vector6 of_a, of_b;  ///< J: what it asks of the velocities
     Vector6 to_a, to_b;  ///< M^-1 J^T: what it gives
+    /// What it gives to all bodies, as joints pass it on; empty: there are none.
+    Eigen::VectorXd to_all{};
   };
   [[nodiscard]] Line line(std::size_t touch, const Vector3& direction) const;
   [[nodiscard]] double coupling(const Line& asks, const Line& gives) const;

@@ -282,6 +282,7 @@ class Search {
       }
       ContactSystem alone;
       alone.bodies = state_.bodies;
+      alone.joints = state_.joints;
       const Vector3& n = forces_.now()[k].normal;
       const Vector3 t1 = u.normalized();
       for (const Vector3& d : {n, t1, Vector3(n.cross(t1))}) {
@@ -326,6 +327,7 @@ std::vector<Twist> held_velocities(const TurningState& state, const std::vector<
                                    const std::vector<FrictionChoice>& choices) {
   ContactSystem held;
   held.bodies = state.bodies;
+  held.joints = state.joints;
   for (std::size_t k = 0; k < choices.size(); ++k) {
     if (choices[k].does == Does::opens) {
       continue;
@@ -350,13 +352,20 @@ std::vector<Twist> held_velocities(const TurningState& state, const std::vector<
 std::optional<Parting> parting(const TurningState& state) {
   ContactSystem all;
   all.bodies = state.bodies;
+  all.joints = state.joints;
   for (const Touch& touch : state.touches) {
     const TouchNow now = look_at(touch, state.states[touch.a], state.states[touch.b]);
     all.rows.push_back(row_of(state, touch, now, now.normal));
   }
   Parting found{velocities_of(state), {}};
-  const Complementarity impulses =
-      solve_complementarity(all.coupling(), all.rates(found.velocities));
+  const Eigen::MatrixXd W = all.coupling();
+  Eigen::VectorXd rates = all.rates(found.velocities);
+  for (Eigen::Index k = 0; k < rates.size(); ++k) {
+    if (W(k, k) == 0.0) {
+      rates[k] = 0.0;  // joints block it: what is left is roundoff
+    }
+  }
+  const Complementarity impulses = solve_complementarity(W, rates);
   if (!impulses.solved) {
     return std::nullopt;
   }
@@ -370,6 +379,7 @@ std::optional<Parting> parting(const TurningState& state) {
 void put_at_gaps(TurningState& state, const std::vector<char>& moves) {
   ContactSystem held;
   held.bodies = state.bodies;
+  held.joints = state.joints;
   std::vector<double> off;
   for (std::size_t k = 0; k < state.touches.size(); ++k) {
     if (moves[k] == 0) {

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace kairos {
@@ -39,33 +40,11 @@ constexpr double reversed = 1e-6;
 /// What is this part of its size beyond a rim is beyond it.
 constexpr double over_rim = 1e-12;
 
-/// The group at another instant, in other states.
-TurningState at_states(const TurningGroup& group, Instant t,
-                       std::span<const BodyState> free_states) {
-  TurningState state;
-  state.radius = group.start.radius;
-  state.touches = group.start.touches;
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < group.bodies.size(); ++i) {
-    const BodyInertia& inertia = group.inertia[i];
-    const bool free = inertia.mass > 0.0;
-    state.states.push_back(free ? free_states[next++] : group.start.states[i]);
-    const BodyState& s = state.states.back();
-    state.bodies.push_back(group_body(inertia, s.pose));
-    Twist load;
-    if (free) {
-      Wrench applied{group.constant_force[i], Vector3::Zero()};
-      for (const Force* const force : group.forces[i]) {
-        force->add(t, {&s, 1}, {&applied, 1});
-      }
-      load.linear = applied.force / inertia.mass;
-      if (inertia.rotates) {
-        load.angular = angular_acceleration(inertia, s, applied.torque);
-      }
-    }
-    state.loads.push_back(load);
-  }
-  return state;
+/// Of each body of a group among all of them.
+std::vector<std::size_t> own_places(std::size_t n) {
+  std::vector<std::size_t> places(n);
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  return places;
 }
 
 /// Of sliding: along the velocity, and where that is hardly any, as it was.
@@ -106,7 +85,7 @@ class ContactForce final : public Force {
 
   void add(Instant t, std::span<const BodyState> bodies,
            std::span<Wrench> wrenches) const override {
-    const TurningState state = at_states(group_, t, bodies);
+    const TurningState state = turning_state(group_, t, bodies);
     TurningForces forces(state);
     const auto found = forces.solve(directed(mode_, forces.now(), slow_), !forces.several());
     std::size_t next = 0;
@@ -163,6 +142,27 @@ class PlacedForce final : public Force {
   std::size_t place_;
 };
 
+/// Forces on what joints hold together, or those of the joints.
+class MechanismForce final : public Force {
+ public:
+  /// `place`: of a body of the group in the island.
+  MechanismForce(const GroupMechanism& mechanism, std::vector<std::size_t> place, bool of_joints)
+      : mechanism_(mechanism), place_(std::move(place)), of_joints_(of_joints) {}
+
+  void add(Instant t, std::span<const BodyState> bodies,
+           std::span<Wrench> wrenches) const override {
+    add_mechanism_forces(mechanism_, place_, of_joints_, t, bodies, wrenches);
+  }
+  [[nodiscard]] double potential(Instant, std::span<const BodyState>) const override { return 0.0; }
+  [[nodiscard]] bool conservative() const override { return false; }
+  [[nodiscard]] std::string description() const override { return "what acts on a mechanism"; }
+
+ private:
+  const GroupMechanism& mechanism_;
+  std::vector<std::size_t> place_;
+  bool of_joints_;
+};
+
 class Step {
  public:
   Step(const TurningGroup& group, const TurningMode& mode, Stepper& stepper, Instant t)
@@ -212,7 +212,7 @@ class Step {
 
   /// The group on its way, s after the start of the step.
   [[nodiscard]] TurningState at(double s) const {
-    return at_states(group_, t_ + s, free_states(s));
+    return turning_state(group_, t_ + s, free_states(s));
   }
 
   bool integrate(double longest) {
@@ -227,7 +227,18 @@ class Step {
       island.inertia.push_back(group_.inertia[i]);
       island.constant_force.push_back(group_.constant_force[i]);
     }
+    std::vector<std::size_t> place(group_.bodies.size(), 0);
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      place[free_[k]] = k;
+    }
+    std::deque<MechanismForce> hanging;
+    for (const GroupMechanism& mechanism : group_.mechanisms) {
+      island.forces.push_back(&hanging.emplace_back(mechanism, place, false));
+    }
     island.forces.push_back(&force);
+    for (const GroupMechanism& mechanism : group_.mechanisms) {
+      island.forces.push_back(&hanging.emplace_back(mechanism, place, true));
+    }
     const std::int64_t evaluated = stepper_.evaluations();
     double h = longest;
     for (int round = 0; round < most_halvings; ++round) {
@@ -401,7 +412,11 @@ class Step {
     for (const FrictionChoice& c : mode_.choices) {
       held.push_back(c.does != Does::opens ? 1 : 0);
     }
-    put_at_gaps(end, held);
+    if (group_.mechanisms.empty()) {
+      put_at_gaps(end, held);
+    } else {
+      put_onto_joints(end, held);
+    }
     const TurningForces there(end);
     const std::vector<Twist> velocities = held_velocities(end, there.now(), mode_.choices);
     for (std::size_t k = 0; k < free_.size(); ++k) {
@@ -413,6 +428,29 @@ class Step {
       bend_to(bent[k], h, before_[k], state);
     }
     return bent;
+  }
+
+  /// The same of what hangs on joints: what is done for gaps is off the joints only as much as its
+  /// square, and is put back onto them.
+  void put_onto_joints(TurningState& end, const std::vector<char>& held) {
+    const Instant t = t_ + step_.duration;
+    bool fits = put_positions_onto_joints(group_.mechanisms, t, end.states);
+    renew(end);
+    put_at_gaps(end, held);
+    fits = put_positions_onto_joints(group_.mechanisms, t, end.states) && fits;
+    put_velocities_onto_joints(group_.mechanisms, t, end.states);
+    renew(end);
+    if (!fits) {
+      step_.refusal = "the joints fit no position at the end of a step";
+    }
+  }
+
+  /// What follows from where bodies are.
+  void renew(TurningState& state) const {
+    for (std::size_t i = 0; i < state.bodies.size(); ++i) {
+      state.bodies[i] = group_body(group_.inertia[i], state.states[i].pose);
+    }
+    state.joints = group_joints(group_.mechanisms, t_ + step_.duration, state.states);
   }
 
   /// Power of the contact forces at 8 nodes, and the polynomials through it, integrated.
@@ -513,6 +551,54 @@ class Step {
 };
 
 }  // namespace
+
+TurningState turning_state(const TurningGroup& group, Instant t,
+                           std::span<const BodyState> free_states) {
+  TurningState state;
+  state.radius = group.start.radius;
+  state.touches = group.start.touches;
+  std::size_t next = 0;
+  std::vector<Wrench> applied;
+  for (std::size_t i = 0; i < group.bodies.size(); ++i) {
+    const BodyInertia& inertia = group.inertia[i];
+    const bool free = inertia.mass > 0.0;
+    state.states.push_back(free ? free_states[next++] : group.start.states[i]);
+    const BodyState& s = state.states.back();
+    state.bodies.push_back(group_body(inertia, s.pose));
+    applied.push_back({group.constant_force[i], Vector3::Zero()});
+    if (free) {
+      for (const Force* const force : group.forces[i]) {
+        force->add(t, {&s, 1}, {&applied.back(), 1});
+      }
+    }
+  }
+  const auto load = [&](std::size_t i) {
+    const BodyInertia& inertia = group.inertia[i];
+    Twist out;
+    if (inertia.mass > 0.0) {
+      out.linear = applied[i].force / inertia.mass;
+      if (inertia.rotates) {
+        out.angular = angular_acceleration(inertia, state.states[i], applied[i].torque);
+      }
+    }
+    return out;
+  };
+  for (const GroupMechanism& mechanism : group.mechanisms) {
+    const std::vector<std::size_t> place = own_places(group.bodies.size());
+    add_mechanism_forces(mechanism, place, false, t, state.states, applied);
+    for (const std::size_t i : mechanism.places) {
+      const Twist alone = load(i);
+      state.applied =
+          std::max(state.applied, alone.linear.norm() + alone.angular.norm() * state.radius[i]);
+    }
+    add_mechanism_forces(mechanism, place, true, t, state.states, applied);
+  }
+  for (std::size_t i = 0; i < group.bodies.size(); ++i) {
+    state.loads.push_back(load(i));
+  }
+  state.joints = group_joints(group.mechanisms, t, state.states);
+  return state;
+}
 
 double turning_rest(const TurningGroup& group) { return 4.0 * reversed * slow_slip(group); }
 

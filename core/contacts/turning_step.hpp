@@ -34,6 +34,7 @@ struct TurningGroup {
   std::vector<Vector3> constant_force;  ///< by place, N
   /// By place: forces that depend on the state or on time, of the body alone; not owned.
   std::vector<std::vector<const Force*>> forces;
+  std::vector<GroupMechanism> mechanisms;   ///< what hangs together by joints
   std::vector<TurningPair> pairs;           ///< as `Touch::pair` counts
   std::vector<std::vector<TouchRim>> rims;  ///< by touch
 };
@@ -63,6 +64,10 @@ struct TurningStep {
   std::vector<Polynomial<3>> leaked;
   std::int64_t evaluations = 0;
 };
+
+/// The group at another instant, in other states, of its free bodies.
+[[nodiscard]] TurningState turning_state(const TurningGroup& group, Instant t,
+                                         std::span<const BodyState> free_states);
 
 /// What slides slower than this, m/s, may be what has just stopped: a step that ends there ends a
 /// little after. Taken to slide on, it would stop again at once, and so without end.

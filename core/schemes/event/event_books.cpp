@@ -72,7 +72,9 @@ void EventMotions::book(Flow& flow, Instant t) {
     booked_until(flow) = t;
     return;
   }
-  book_surface_forces(first, t);
+  for (const BodyIndex i : flow.island.bodies) {
+    book_surface_forces(i, t);
+  }
   // The state at the end of a segment is the stepper's; the motion agrees with it up to roundoff
   // only.
   const bool whole = !(end_of(first) - t > 0.0) && !support(first);
@@ -106,7 +108,9 @@ void EventMotions::book(Flow& flow, Instant t) {
       !turns && (flow.held || (flow.exact && !run_.model.tumbles(run_.model.island_of(first))));
   Leg leg{flow.island, booked, to, given, exact, roundoff, riding_work(flow, t)};
   if (turns) {
-    leg.contact_work = book_turn(first, from, t);
+    for (const BodyIndex i : flow.island.bodies) {
+      leg.contact_work += book_turn(i, from, t);
+    }
   }
   if (flow.island.forces.empty()) {
     run_.account.leg(leg);
@@ -116,7 +120,7 @@ void EventMotions::book(Flow& flow, Instant t) {
       motions[k] = of(flow.island.bodies[k]);
     }
     if (flow.island.joints != nullptr) {
-      leg.contact_work = whole ? run_.account.projected(flow.projection) : 0.0;
+      leg.contact_work += whole ? run_.account.projected(flow.projection) : 0.0;
       leg.riding_work = run_.account.joint_work(flow.island, motions, from, duration) +
                         (whole ? flow.projection.driven : 0.0);
     }

@@ -75,7 +75,15 @@ void EventContacts::set_free(std::span<const BodyIndex> bodies, Instant t) {
     if (motions_.support(i)) {
       resume_support(i, t);
     }
-    motions_.launch(i, t);
+    const std::vector<BodyIndex>& island = motions_.island(i);
+    const bool launched =
+        joints_of(i) != nullptr && std::any_of(bodies.begin(), bodies.end(), [&](BodyIndex k) {
+          return std::find(island.begin(), island.end(), k) <
+                 std::find(island.begin(), island.end(), i);
+        });
+    if (!launched) {
+      motions_.launch(i, t);
+    }
   }
   modes_.tell(changes, t);
   for (const BodyIndex i : bodies) {

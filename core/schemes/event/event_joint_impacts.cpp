@@ -120,8 +120,14 @@ void EventContacts::strike_jointed(Event& event) {
   event.contact.restitution = model.restitution(event.a, event.b);
   event.before_a = motions_.now(event.a);
   event.before_b = motions_.now(event.b);
-  const JointedContact struck(model, motions_, event);
   const double u = normal_velocity(event.contact, event.before_a, event.before_b);
+  if (u >= 0.0) {
+    // They came together only by what they were off their joints.
+    event.after_a = event.before_a;
+    event.after_b = event.before_b;
+    return;
+  }
+  const JointedContact struck(model, motions_, event);
   const double p = struck.given > 0.0 ? -(1.0 + event.contact.restitution) * u / struck.given : 0.0;
   for (const StruckIsland* side : {&struck.of_a, &struck.of_b}) {
     for (std::size_t k = 0; k < side->states.size(); ++k) {

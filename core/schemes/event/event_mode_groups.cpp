@@ -2,6 +2,7 @@
 // concerns.
 
 #include "core/contacts/complementarity.hpp"
+#include "core/joint_system.hpp"
 #include "core/schemes/event/event_modes.hpp"
 #include "core/schemes/event/gathered_group.hpp"
 #include "core/schemes/event/mode_guards.hpp"
@@ -62,8 +63,22 @@ Twist EventModes::load(BodyIndex i, const BodyState& state) const {
 double EventModes::rest_speed(BodyIndex a, BodyIndex b, const BodyState& at_a,
                               const BodyState& at_b, const SettleOptions& options) const {
   const double tolerance = accumulation_.rest_tolerance(a, b, run_.model.restitution(a, b));
-  const double pressing = load(a, at_a).linear.norm() + load(b, at_b).linear.norm();
-  const double speeds = at_a.twist.linear.norm() + at_b.twist.linear.norm();
+  double pressing = load(a, at_a).linear.norm() + load(b, at_b).linear.norm();
+  double speeds = at_a.twist.linear.norm() + at_b.twist.linear.norm();
+  if (jointed(a) || jointed(b)) {
+    // Joints press, too, and pass on what is roundoff of the fastest; as where hops are judged.
+    for (const BodyIndex i : {a, b}) {
+      const auto moving = motions_.moving(i);
+      const Motion& motion = moving.motion();
+      const double turns = (i == a ? at_a : at_b).twist.angular.squaredNorm();
+      pressing += motion.acceleration(std::min(run_.time - motion.start, motion.duration)).norm();
+      pressing += turns > 0.0 ? turns * bounding_radius(run_.model.shape(i)) : 0.0;
+      for (const BodyIndex k : jointed(i) ? motions_.island(i) : std::vector<BodyIndex>()) {
+        const Twist v = motions_.at(k, run_.time).twist;
+        speeds += v.linear.norm() + v.angular.norm() * run_.model.inertia(k).bounding_radius;
+      }
+    }
+  }
   double slow = std::sqrt(2.0 * pressing * tolerance) + 16.0 * epsilon * speeds;
   if (options.unite && options.remaining > 0.0) {
     slow = std::max(slow, tolerance / options.remaining);
@@ -79,11 +94,18 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
   const auto is_seed = [&](BodyIndex i) {
     return std::find(seeds.begin(), seeds.end(), i) != seeds.end();
   };
+  // What joints hold together was struck together.
+  const auto hangs_on_seed = [&](BodyIndex i) {
+    const JointSystem* const joints =
+        run_.model.is_free(i) ? run_.model.islands()[run_.model.island_of(i)].joints : nullptr;
+    const std::vector<BodyIndex>& mates = motions_.island(i);
+    return joints != nullptr && std::any_of(mates.begin(), mates.end(), is_seed);
+  };
   const auto state_of = [&](BodyIndex i) {
-    const bool known = is_seed(i) || run_.model.mobility(i) == Mobility::fixed;
+    const bool known = is_seed(i) || run_.model.mobility(i) == Mobility::fixed || hangs_on_seed(i);
     return known ? motions_.now(i) : motions_.at(i, t);
   };
-  const auto add = [&](BodyIndex i) {
+  const auto add_one = [&](BodyIndex i) {
     const BodyState state = state_of(i);
     found.bodies.push_back(i);
     found.states.push_back(state);
@@ -94,8 +116,11 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
     found.group.round.push_back(std::holds_alternative<Sphere>(run_.model.shape(i)) ? 1 : 0);
     if (run_.model.is_free(i)) {
       const Island& island = run_.model.islands()[run_.model.island_of(i)];
-      if (island.joints != nullptr) {
-        found.refusal = "'" + run_.model.body(i).name + "' hangs on a joint";
+      if (island.joints != nullptr && (options.impact || island.joints->driven())) {
+        found.refusal = "'" + run_.model.body(i).name + "' hangs on a joint" +
+                        (options.impact ? "" : " that is driven");
+      } else if (island.joints != nullptr) {
+        found.hangs = "'" + run_.model.body(i).name + "' hangs on a joint";
       } else if (island.bodies.size() > 1) {
         found.refusal = "'" + run_.model.body(i).name + "' hangs on another by a force";
       } else if (!island.forces.empty()) {
@@ -104,6 +129,23 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
     } else if (run_.model.mobility(i) == Mobility::driven && !options.impact) {
       found.driven = i;
     }
+  };
+  const auto add = [&](BodyIndex i) {
+    const Island* const island =
+        run_.model.is_free(i) ? &run_.model.islands()[run_.model.island_of(i)] : nullptr;
+    if (island == nullptr || island->joints == nullptr || options.impact) {
+      return add_one(i);
+    }
+    if (found.has(i)) {
+      return;
+    }
+    GroupMechanism mechanism{{}, island->joints, island->forces};
+    mechanism.forces.pop_back();  // those of the joints
+    for (const BodyIndex k : island->bodies) {
+      mechanism.places.push_back(found.bodies.size());
+      add_one(k);
+    }
+    found.mechanisms.push_back(std::move(mechanism));
   };
   std::vector<BodyIndex> sorted(seeds.begin(), seeds.end());
   std::sort(sorted.begin(), sorted.end(),
@@ -183,6 +225,11 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
   return found;
 }
 
+bool EventModes::holds_island(BodyIndex i) const {
+  const std::vector<BodyIndex>& mates = motions_.island(i);
+  return std::any_of(mates.begin(), mates.end(), [&](BodyIndex k) { return graph_.holds(k); });
+}
+
 std::vector<BodyIndex> EventModes::group(std::span<const BodyIndex> seeds) const {
   std::vector<BodyIndex> bodies;
   const auto add = [&](BodyIndex i) {
@@ -196,6 +243,11 @@ std::vector<BodyIndex> EventModes::group(std::span<const BodyIndex> seeds) const
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     for (const BodyIndex j : graph_.partners(bodies[k])) {
       add(j);
+    }
+    if (on_joints(bodies[k])) {
+      for (const BodyIndex j : motions_.island(bodies[k])) {
+        add(j);
+      }
     }
   }
   std::sort(bodies.begin(), bodies.end(),

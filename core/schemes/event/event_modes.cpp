@@ -60,6 +60,9 @@ bool EventModes::settle(std::span<const BodyIndex> seeds, Instant t, const Adopt
 std::vector<BodyPair> EventModes::parting_pairs(std::span<const BodyIndex> seeds, Instant t,
                                                 const SettleOptions& options) {
   const Gathered found = gather(seeds, t, options);
+  if (!found.hangs.empty()) {
+    return {};
+  }
   ContactSystem system{found.group.bodies, {}};
   std::vector<std::size_t> first;
   for (const GroupPatch& patch : found.group.patches) {
@@ -93,6 +96,9 @@ bool EventModes::settle_once(std::span<const BodyIndex> seeds, Instant t, const 
                              const SettleOptions& options) {
   Gathered found = gather(seeds, t, options);
   why_not_ = found.refusal;
+  if (why_not_.empty() && found.driven && !found.hangs.empty()) {
+    why_not_ = found.hangs + ", and what it touches is driven";
+  }
   if (why_not_.empty() && found.driven) {
     return settle_driven(found, t, adopt);
   }
@@ -104,6 +110,10 @@ bool EventModes::settle_once(std::span<const BodyIndex> seeds, Instant t, const 
   }
   if (options.turning_only && !has_turned(seeds)) {
     return false;
+  }
+  if (!found.hangs.empty()) {
+    why_not_ = found.hangs;
+    return (options.may_turn || has_turned(seeds)) && settle_turning(seeds, t, adopt, options);
   }
   if (found.varies) {
     why_not_ = "'" + run_.model.body(*found.varies).name + "' feels forces that are not constant";
@@ -241,7 +251,8 @@ bool EventModes::completes(const Gathered& found, const FlatMode& mode,
     }
   }
   const double pull =
-      pulled(found.group.bodies, found.group.radius, points, before, mode.velocities);
+      pulled(found.group.bodies, found.group.radius, points, before, mode.velocities,
+             turning != nullptr ? turning->group.start.joints.get() : nullptr);
   if (pull <= allowed) {
     return true;
   }
@@ -294,7 +305,9 @@ void EventModes::commit(const Gathered& found, const FlatMode& mode, Instant t, 
   for (std::size_t k = 0; k < found.bodies.size(); ++k) {
     const BodyIndex i = found.bodies[k];
     if (run_.model.is_free(i)) {
-      if (graph_.holds(i)) {
+      if (on_joints(i)) {
+        go_on_jointed(found, k, t, turning);
+      } else if (graph_.holds(i)) {
         Twist acceleration = mode.accelerations[k];
         if (mode.slip.empty() || found.group.round[k] == 0) {
           acceleration.angular.setZero();
@@ -318,6 +331,24 @@ void EventModes::commit(const Gathered& found, const FlatMode& mode, Instant t, 
       predictor_.predict(i, t);
     }
   }
+}
+
+/// What joints hold together goes on together, with the first of its bodies.
+void EventModes::go_on_jointed(const Gathered& found, std::size_t k, Instant t,
+                               const Turning* turning) {
+  const BodyIndex i = found.bodies[k];
+  const std::vector<BodyIndex>& island = motions_.island(i);
+  if (island.front() != i) {
+    return;
+  }
+  if (turning == nullptr || !holds_island(i)) {
+    return motions_.launch(i, t);
+  }
+  std::vector<EventMotions::Turn> turns;
+  for (const BodyIndex mate : island) {
+    turns.push_back(turning->turn_of(found.place(mate)));
+  }
+  motions_.turn_together(i, t, turns);
 }
 
 /// Velocity of the surface of i along itself, relative to body i, m/s: that of a belt.

@@ -55,7 +55,9 @@ class EventModes {
   [[nodiscard]] const std::string& why_not() const { return why_not_; }
 
   /// Whether contact forces hold this free body.
-  [[nodiscard]] bool holds(BodyIndex i) const { return run_.model.is_free(i) && graph_.holds(i); }
+  [[nodiscard]] bool holds(BodyIndex i) const {
+    return run_.model.is_free(i) && (graph_.holds(i) || (on_joints(i) && holds_island(i)));
+  }
   /// Free bodies that lie on a surface, by name.
   [[nodiscard]] std::vector<BodyIndex> held_by(BodyIndex surface) const;
   /// Free bodies that are held together with one of these, they included, by name.
@@ -117,9 +119,16 @@ class EventModes {
   void persist(Archive& archive);
 
  private:
+  [[nodiscard]] bool on_joints(BodyIndex i) const { return !graph_.empty() && jointed(i); }
+  [[nodiscard]] bool jointed(BodyIndex i) const {
+    return !run_.model.scene().joints.empty() && run_.model.is_free(i) &&
+           run_.model.islands()[run_.model.island_of(i)].joints != nullptr;
+  }
+  [[nodiscard]] bool holds_island(BodyIndex i) const;
   struct Gathered;
   /// A step of a group that turns.
   struct Turning;
+  void go_on_jointed(const Gathered& found, std::size_t k, Instant t, const Turning* turning);
   [[nodiscard]] Gathered gather(std::span<const BodyIndex> seeds, Instant t,
                                 const SettleOptions& options);
   [[nodiscard]] double rest_speed(BodyIndex a, BodyIndex b, const BodyState& at_a,
@@ -146,7 +155,7 @@ class EventModes {
                                  const SettleOptions& options);
   [[nodiscard]] bool settle_turning(std::span<const BodyIndex> seeds, Instant t, const Adopt& adopt,
                                     const SettleOptions& options);
-  [[nodiscard]] std::string add_touches(Gathered& found, Turning& turning) const;
+  [[nodiscard]] std::string add_touches(Gathered& found, Instant t, Turning& turning) const;
   [[nodiscard]] std::string add_rims(const Gathered& found, Turning& turning) const;
   [[nodiscard]] static bool presses(const Gathered& found, const Turning& turning,
                                     const BodyPair& pair);
@@ -159,10 +168,10 @@ class EventModes {
   void still_hold(ContactGroup& group, GroupImpact& impact) const;
   [[nodiscard]] bool make_room(std::span<const BodyIndex> seeds, Instant t, SettleOptions options,
                                Gathered& found, Turning& turning);
-  void lift(Gathered& found, Turning& turning);
-  void raise(Gathered& found, Turning& turning);
+  void lift(Gathered& found, Turning& turning, Instant t);
+  void raise(Gathered& found, Turning& turning, Instant t);
   [[nodiscard]] static bool let_hop(Turning& turning, double roundoff);
-  void let_jam(const Gathered& found, Turning& turning, double still) const;
+  void let_jam(const Gathered& found, Turning& turning, Instant t, double still) const;
   void tell_jam(const Gathered& found, const Turning& turning, Instant t);
   [[nodiscard]] bool has_room(std::span<const BodyState> before, const Gathered& found, Instant t);
   [[nodiscard]] bool part_ways(const Gathered& found, Turning& turning, Instant t,

@@ -310,6 +310,7 @@ void EventMotions::rest(BodyIndex i, Instant t) {
   flow.held = true;
   for (std::size_t k = 0; k < flow.states.size(); ++k) {
     const BodyIndex body = flow.island.bodies[k];
+    forget_surface_forces(body);
     flow.states[k] = flow.booked[k] = now_[body];
     set_motion(body, Motion::at_rest(t, now_[body].pose));
   }
@@ -324,10 +325,34 @@ void EventMotions::hold(BodyIndex i, Instant t, const Motion& motion) {
 
 void EventMotions::turn(BodyIndex i, Instant t, const Turn& turn) {
   hold(i, t, Twist{});
+  begin_turn(i, flow_of(i), 0, turn);
+}
+
+void EventMotions::turn_together(BodyIndex i, Instant t, std::span<const Turn> turns) {
+  Flow& flow = own_flow(i);
+  check_ready(i, t);
+  flow.held = true;
+  set_forces(flow);
+  booked_until(flow) = t;
+  flow.projection = {};
+  for (std::size_t k = 0; k < turns.size(); ++k) {
+    flow.booked[k] = now_[flow.island.bodies[k]];
+  }
+  if (run_.options.roundoff) {
+    flow.launched = flow.booked;
+    flow.lost = 0.0;
+  }
+  for (std::size_t k = 0; k < turns.size(); ++k) {
+    forget_surface_forces(flow.island.bodies[k]);
+    begin_turn(flow.island.bodies[k], flow, k, turns[k]);
+  }
+}
+
+void EventMotions::begin_turn(BodyIndex i, Flow& flow, std::size_t place, const Turn& turn) {
   Ties& tied = tie(i);
   tied.turns = true;
   tied.worked.assign(1, turn.worked);
-  flow_of(i).states[0] = turn.end;
+  flow.states[place] = turn.end;
   set_motion(i, turn.motion);
 }
 

@@ -113,6 +113,8 @@ class EventMotions {
     Polynomial<3> worked{};
   };
   void turn(BodyIndex i, Instant t, const Turn& turn);
+  /// The same for the bodies of the island of i, which joints hold together, in its order.
+  void turn_together(BodyIndex i, Instant t, std::span<const Turn> turns);
 
   /// The island of i, which joints and a contact hold, is at rest from `now` on, until it is
   /// launched again.
@@ -263,6 +265,7 @@ class EventMotions {
 
   void book(Flow& flow, Instant t);
   void book_surface_forces(BodyIndex i, Instant t);
+  void begin_turn(BodyIndex i, Flow& flow, std::size_t place, const Turn& turn);
   [[nodiscard]] double book_turn(BodyIndex i, Instant from, Instant to);
   [[nodiscard]] double riding_work(const Flow& flow, Instant t);
   [[nodiscard]] double new_roundoff(Flow& flow, Instant t);

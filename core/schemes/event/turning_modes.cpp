@@ -33,6 +33,16 @@ constexpr int most_steps = 4000;
 /// So many free bodies of a group may turn: forces of more are found too slowly.
 constexpr std::ptrdiff_t most_bodies = 24;
 
+std::vector<BodyState> free_states(const TurningGroup& group) {
+  std::vector<BodyState> states;
+  for (std::size_t i = 0; i < group.bodies.size(); ++i) {
+    if (group.inertia[i].mass > 0.0) {
+      states.push_back(group.start.states[i]);
+    }
+  }
+  return states;
+}
+
 }  // namespace
 
 /// Whether what holds the two is pressed.
@@ -92,7 +102,7 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
     turning.mode = turning_mode(turning.group.start, std::max(still, turning_rest(turning.group)));
   }
   if (!turning.mode.refusal.empty()) {
-    let_jam(found, turning, still);
+    let_jam(found, turning, t, still);
   }
   why_not_ = turning.mode.refusal;
   if (!why_not_.empty()) {
@@ -154,13 +164,13 @@ bool EventModes::make_room(std::span<const BodyIndex> seeds, Instant t, SettleOp
     turning = {};
     why_not_ = found.refusal.empty() ? why_not_turn(found, t) : found.refusal;
     if (why_not_.empty()) {
-      why_not_ = add_touches(found, turning);
+      why_not_ = add_touches(found, t, turning);
     }
     if (!why_not_.empty()) {
       return false;
     }
     const std::vector<BodyState> before = found.states;
-    lift(found, turning);
+    lift(found, turning, t);
     if (has_room(before, found, t)) {
       return true;
     }
@@ -241,7 +251,7 @@ double EventModes::next_step(const Gathered& found) {
 
 /// The touches that are at rest along their normals, and the planes between bodies; why there are
 /// none.
-std::string EventModes::add_touches(Gathered& found, Turning& turning) const {
+std::string EventModes::add_touches(Gathered& found, Instant t, Turning& turning) const {
   TurningGroup& group = turning.group;
   if (found.driven) {
     return "'" + run_.model.body(*found.driven).name + "' is driven, and what touches it turns";
@@ -251,12 +261,15 @@ std::string EventModes::add_touches(Gathered& found, Turning& turning) const {
   group.start.loads = found.group.loads;
   group.start.radius = found.group.radius;
   group.bodies = found.bodies;
+  group.mechanisms = found.mechanisms;
   for (const BodyIndex i : found.bodies) {
     const bool free = run_.model.is_free(i);
     group.inertia.push_back(free ? run_.model.inertia(i) : BodyInertia{});
     group.constant_force.push_back(free ? motions_.steady_force(i) : Vector3(Vector3::Zero()));
-    group.forces.push_back(free ? run_.model.islands()[run_.model.island_of(i)].forces
-                                : std::vector<const Force*>());
+    const Island* const island = free ? &run_.model.islands()[run_.model.island_of(i)] : nullptr;
+    group.forces.push_back(island != nullptr && island->joints == nullptr
+                               ? island->forces
+                               : std::vector<const Force*>());
   }
   for (std::size_t p = 0; p < found.pairs.size(); ++p) {
     const auto [a, b] = found.pairs[p];
@@ -307,6 +320,12 @@ std::string EventModes::add_touches(Gathered& found, Turning& turning) const {
     }
     group.pairs.push_back(std::move(pair));
   }
+  if (!group.mechanisms.empty()) {
+    put_velocities_onto_joints(group.mechanisms, t, group.start.states);
+    TurningState start = turning_state(group, t, free_states(group));
+    start.touches = std::move(group.start.touches);
+    group.start = std::move(start);
+  }
   return {};
 }
 
@@ -326,9 +345,9 @@ std::string EventModes::add_rims(const Gathered& found, Turning& turning) const 
 
 /// Gaps that are too small to be held are made larger; then touches are those alone that are at
 /// rest along their normals.
-void EventModes::lift(Gathered& found, Turning& turning) {
+void EventModes::lift(Gathered& found, Turning& turning, Instant t) {
   TurningState& start = turning.group.start;
-  raise(found, turning);
+  raise(found, turning, t);
   std::erase_if(start.touches, [&](const Touch& touch) {
     const TouchNow now = look_at(touch, start.states[touch.a], start.states[touch.b]);
     return found.passes[touch.pair] != 0 ||
@@ -360,7 +379,7 @@ bool EventModes::let_hop(Turning& turning, double roundoff) {
 }
 
 /// Where friction jams what slides, an impulse stops it, and it goes on from there.
-void EventModes::let_jam(const Gathered& found, Turning& turning, double still) const {
+void EventModes::let_jam(const Gathered& found, Turning& turning, Instant t, double still) const {
   auto stopped = jam(turning.group.start, still);
   if (!stopped) {
     return;
@@ -369,6 +388,11 @@ void EventModes::let_jam(const Gathered& found, Turning& turning, double still) 
   for (std::size_t k = 0; k < found.bodies.size(); ++k) {
     after.states[k].twist = stopped->velocities[k];
     after.loads[k] = load(found.bodies[k], after.states[k]);
+  }
+  if (!turning.group.mechanisms.empty()) {
+    TurningGroup stopped_group = turning.group;
+    stopped_group.start = after;
+    after = turning_state(stopped_group, t, free_states(stopped_group));
   }
   TurningMode mode = turning_mode(after, std::max(still, turning_rest(turning.group)));
   if (mode.refusal.empty()) {
@@ -406,7 +430,7 @@ void EventModes::tell_jam(const Gathered& found, const Turning& turning, Instant
   }
 }
 
-void EventModes::raise(Gathered& found, Turning& turning) {
+void EventModes::raise(Gathered& found, Turning& turning, Instant t) {
   TurningState& start = turning.group.start;
   const std::vector<char> all(start.touches.size(), 1);
   std::vector<double> missing(turning.group.pairs.size(), 0.0);
@@ -434,6 +458,7 @@ void EventModes::raise(Gathered& found, Turning& turning) {
       start.bodies[k] = group_body(turning.group.inertia[k], start.states[k].pose);
     }
   }
+  start.joints = group_joints(turning.group.mechanisms, t, start.states);
 }
 
 /// Whether bodies whose gaps were made larger stay clear of all others: those of the group, too,

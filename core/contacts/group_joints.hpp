@@ -1,0 +1,64 @@
+#pragma once
+
+#include "core/force.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+
+class JointSystem;
+
+/// Bodies of a contact group that joints hold together: all of an island.
+struct GroupMechanism {
+  std::vector<std::size_t> places;        ///< in the group, as the island orders them
+  const JointSystem* joints = nullptr;    ///< not owned
+  std::vector<const Force*> forces = {};  ///< of the island, but for those of its joints; not owned
+};
+
+/// What joints make of pushes in a contact group, at one instant: of what a push would give to the
+/// bodies without them, that which they leave. Contacts then see bodies as if there were no joints,
+/// which move each other.
+class GroupJoints {
+ public:
+  /// `states`: by place in the group.
+  GroupJoints(std::span<const GroupMechanism> mechanisms, Instant t,
+              std::span<const BodyState> states);
+
+  /// Replaces changes of velocity, six numbers for each body of the group, by those that are left.
+  void pass_on(Eigen::VectorXd& changes) const;
+  /// The same of what a push along `asks` gives; nothing where joints block it.
+  void pass_on(const Eigen::VectorXd& asks, Eigen::VectorXd& gives) const;
+
+ private:
+  struct Passing {
+    std::vector<std::size_t> places;
+    Eigen::MatrixXd leaves;
+  };
+  std::vector<Passing> mechanisms_;
+};
+
+/// Of a group whose bodies these are by place; null: no joints.
+[[nodiscard]] std::shared_ptr<const GroupJoints> group_joints(
+    std::span<const GroupMechanism> mechanisms, Instant t, std::span<const BodyState> states);
+
+/// Puts the states of mechanisms back onto their joints, positions or velocities; false where no
+/// position fits.
+[[nodiscard]] bool put_positions_onto_joints(std::span<const GroupMechanism> mechanisms, Instant t,
+                                             std::span<BodyState> states);
+void put_velocities_onto_joints(std::span<const GroupMechanism> mechanisms, Instant t,
+                                std::span<BodyState> states);
+
+/// Adds the forces of mechanisms and of their joints to those that act on the bodies of a group.
+/// `place`: of a body of the group among `states` and `wrenches`.
+void add_mechanism_forces(const GroupMechanism& mechanism, std::span<const std::size_t> place,
+                          bool joints_too, Instant t, std::span<const BodyState> states,
+                          std::span<Wrench> wrenches);
+
+}  // namespace core
+}  // namespace kairos
