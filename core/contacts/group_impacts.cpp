@@ -52,7 +52,7 @@ VectorXd plastic(const MatrixXd& W, const VectorXd& rates, double slow) {
 /// correction.
 void polish(const ContactSystem& system, const VectorXd& returned, VectorXd& impulse,
             std::vector<Twist>& v) {
-  ContactSystem active{system.bodies, {}};
+  ContactSystem active{system.bodies, {}, system.joints};
   std::vector<Index> place;
   for (Index i = 0; i < impulse.size(); ++i) {
     if (impulse[i] > 0.0) {

@@ -26,6 +26,7 @@
 #include <set>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 using namespace kairos;
@@ -300,8 +301,20 @@ TEST_CASE("scenes with friction break no promise, and every stop says what to do
 }
 
 TEST_CASE("bodies on joints break no promise, and every stop says what to do", "[random]") {
-  // What comes to rest on a jointed body stops.
-  CHECK(right_of(SceneKind::jointed, 150) > 110);
+  // What rests on a driven body, or hangs on one, stops.
+  CHECK(right_of(SceneKind::jointed, 150) > 140);
+}
+
+TEST_CASE("bodies on joints: scenes that stopped where contact lasts", "[random]") {
+  // Came to rest on a wall, on a box, on each other; the fourth is a cradle whose balls, little
+  // elastic, handed an impact to and fro between them.
+  for (const auto& [of_seed, index] :
+       {std::pair(3107, 33), {3107, 53}, {3107, 209}, {31, 128}, {4711, 121}}) {
+    const Trial trial = try_scene(
+        jointed_scene(static_cast<std::uint64_t>(of_seed), static_cast<std::uint64_t>(index)));
+    CAPTURE(of_seed, index, trial.reason);
+    CHECK(trial.fate == Fate::right);
+  }
 }
 
 TEST_CASE("the judge tells a joint that is open, and friction that drives", "[random]") {

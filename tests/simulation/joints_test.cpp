@@ -125,8 +125,8 @@ TEST_CASE("problem 16: a pendulum strikes a wall, again and again, and rests", "
 
 TEST_CASE("joints: what one body at rest passes on is predicted of all that hang on it",
           "[joints]") {
-  // A block on a vertical slider rests on a post until a ball strikes it; a plate that is welded to
-  // it then meets a ceiling 14 mm above, within the first step.
+  // A block on a vertical slider rests on a post until a ball strikes it from below, beside the
+  // post; a plate that is welded to it then meets a ceiling 14 mm above, within the first step.
   SceneBuilder builder("outrigger");
   builder.set("duration", 2.1).set("frame", 1.0 / 60.0).set("G", g);
   builder
@@ -141,13 +141,15 @@ TEST_CASE("joints: what one body at rest passes on is predicted of all that hang
                       {"position", Vector3(1.0, 0.21, 0.0)}})
       .body("post", {{"entity", "wall"},
                      {"half_extents", Vector3(0.1, 0.1, 0.1)},
-                     {"position", Vector3(0.0, 0.0, 0.0)}})
+                     {"position", Vector3(0.0, 0.0, -0.15)}})
       .body("ceiling", {{"entity", "wall"},
                         {"half_extents", Vector3(0.2, 0.001, 0.2)},
                         {"position", Vector3(1.0, 0.235, 0.0)}})
-      .body(
-          "ball",
-          {{"entity", "ball"}, {"radius", 0.1}, {"mass", 5}, {"position", Vector3(0.0, 20.0, 0.0)}})
+      .body("ball", {{"entity", "ball"},
+                     {"radius", 0.04},
+                     {"mass", 5},
+                     {"position", Vector3(0.0, -39.53, 0.06)},
+                     {"velocity", Vector3(0.0, 29.6, 0.0)}})
       .add("joint", {{"kind", "slider"},
                      {"bodies", std::vector<std::string>{"block"}},
                      {"anchor", Vector3(0.0, 0.21, 0.0)},

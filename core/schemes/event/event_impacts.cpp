@@ -512,10 +512,10 @@ bool EventContacts::strike_group(const Event& first, double approach) {
   const BodyPair pair{first.a, first.b};
   const Instant t = first.time;
   const GroupLaw* const law = group_law_;
-  if (joints_of(pair.first) != nullptr || joints_of(pair.second) != nullptr) {
+  const bool held = modes_.holds(pair.first) || modes_.holds(pair.second);
+  if (!held && (joints_of(pair.first) != nullptr || joints_of(pair.second) != nullptr)) {
     return false;
   }
-  const bool held = modes_.holds(pair.first) || modes_.holds(pair.second);
   if (law == nullptr || !(held || law->takes_what_touches())) {
     return false;
   }

@@ -116,9 +116,8 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
     found.group.round.push_back(std::holds_alternative<Sphere>(run_.model.shape(i)) ? 1 : 0);
     if (run_.model.is_free(i)) {
       const Island& island = run_.model.islands()[run_.model.island_of(i)];
-      if (island.joints != nullptr && (options.impact || island.joints->driven())) {
-        found.refusal = "'" + run_.model.body(i).name + "' hangs on a joint" +
-                        (options.impact ? "" : " that is driven");
+      if (island.joints != nullptr && island.joints->driven()) {
+        found.refusal = "'" + run_.model.body(i).name + "' hangs on a joint that is driven";
       } else if (island.joints != nullptr) {
         found.hangs = "'" + run_.model.body(i).name + "' hangs on a joint";
       } else if (island.bodies.size() > 1) {
@@ -133,7 +132,7 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
   const auto add = [&](BodyIndex i) {
     const Island* const island =
         run_.model.is_free(i) ? &run_.model.islands()[run_.model.island_of(i)] : nullptr;
-    if (island == nullptr || island->joints == nullptr || options.impact) {
+    if (island == nullptr || island->joints == nullptr) {
       return add_one(i);
     }
     if (found.has(i)) {
@@ -283,6 +282,7 @@ void EventModes::still_hold(ContactGroup& group, GroupImpact& impact) const {
   constexpr double off = 1e-9;  // of the speeds; steps err by some 1e-12 of them
   ContactSystem held;
   held.bodies = impact.system.bodies;
+  held.joints = impact.system.joints;
   for (std::size_t p = 0; p < impact.pairs.size(); ++p) {
     GroupPatch& patch = group.patches[p];
     const Patch* const joined = graph_.find(impact.pairs[p].first, impact.pairs[p].second);
@@ -309,7 +309,14 @@ void EventModes::still_hold(ContactGroup& group, GroupImpact& impact) const {
 EventModes::GroupImpact EventModes::impact_group(const BodyPair& pair, Instant t, bool all) {
   const std::array<BodyIndex, 2> seeds{pair.first, pair.second};
   Gathered found = gather(seeds, t, {.impact = true, .held_only = !all});
+  if (!found.mechanisms.empty()) {
+    put_velocities_onto_joints(found.mechanisms, t, found.states);
+    for (std::size_t k = 0; k < found.bodies.size(); ++k) {
+      found.group.velocities[k] = found.states[k].twist;
+    }
+  }
   GroupImpact impact;
+  impact.system.joints = group_joints(found.mechanisms, t, found.states);
   impact.refusal = std::move(found.refusal);
   impact.bodies = std::move(found.bodies);
   impact.pairs = std::move(found.pairs);
