@@ -552,6 +552,28 @@ TEST_CASE("turning: a plank that is dropped on two blocks comes to rest", "[turn
   }
 }
 
+// How fast it turns made its hops end before it rested: "nothing stays in touch", and the run
+// ended.
+TEST_CASE("turning: a ball that rolls while its hops die out rolls on", "[turning][zeno]") {
+  for (const auto& [radius, e] :
+       {std::pair{0.03, 0.85}, {0.03, 0.95}, {0.1, 0.95}, {0.1, 0.9}, {0.5, 0.98}}) {
+    const std::string text =
+        head(3.0, "0.5") +
+        fmt::format(
+            "[[body]]\nname = \"ball\"\nentity = \"body\"\nradius = {}\nmass = 0.17\n"
+            "restitution = {}\nposition = [0, {}, 0]\nvelocity = [1.0, 0.02, 0]\n"
+            "angular_velocity = [0, 0, {:.17g}]\n",
+            radius, e, radius, -1.0 / radius);
+    const Simulation sim = run(text);
+    CAPTURE(radius, e);
+    check_whole(sim, text);
+    const BodyState end = sim.trajectory.frame_state(sim.trajectory.frame_times().size() - 1)[1];
+    CHECK(std::abs(end.pose.position.y() - radius) <= 1e-9);
+    CHECK(end.twist.linear.x() == Approx(1.0).epsilon(1e-9));  // nothing has rubbed
+    CHECK(end.twist.angular.z() == Approx(-1.0 / radius).epsilon(1e-9));
+  }
+}
+
 // Of infinite friction forces are known while hardly anything presses any more.
 TEST_CASE("turning: a ball rolls over the edge of a box that lies, however rough", "[turning]") {
   const std::string text =

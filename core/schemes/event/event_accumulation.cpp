@@ -239,7 +239,8 @@ bool EventAccumulation::rests(BodyIndex a, BodyIndex b, double approach, double 
     const double s = std::min(t - motion.start, motion.duration);
     const double w = motion.twist(s).angular.norm();
     pressing += motion.acceleration(s).norm();
-    if (w > 0.0) {
+    // Corners go round; the surface of a ball does not come nearer by turning.
+    if (w > 0.0 && !std::holds_alternative<Sphere>(run_.model.shape(i))) {
       pressing += w * w * bounding_radius(run_.model.shape(i));
     }
   }
