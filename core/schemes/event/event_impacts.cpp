@@ -161,6 +161,11 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double bracket, 
     return;
   }
   motions_.open_pair(a, b, t);
+  for (const BodyIndex i : {a, b}) {
+    if (joints_of(i) != nullptr) {
+      motions_.bring_others(i, t);  // they go on together, whether they strike or not
+    }
+  }
   const bool moved = meet_in_one_box(a, b, t);
   if (run_.stopped()) {
     return depart(a, b, t);
