@@ -97,8 +97,8 @@ void Model::build_joints(const std::vector<std::size_t>& place) {
                fmt::format("those of \"{}\" and what hangs on it are over-determined: {} rows, {} "
                            "of them independent",
                            body(island.bodies.front()).name, joints->rows(), rank),
-               "a loop: motions are unique, forces are not; of those that fit the least are taken "
-               "(least norm)"}});
+               "a loop: forces are not unique, of those that fit the least are taken (least norm); "
+               "motions are, but where the loop gains a freedom, as a flat parallelogram does"}});
     }
   }
 }

@@ -7,8 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 namespace kairos {
 inline namespace core {
 namespace {
@@ -32,8 +30,9 @@ void refuse_turning_half_space(const TableReader& table, const Body& body, std::
 
 std::shared_ptr<const Drive> read_track(const TableReader& table, const Body& body,
                                         const std::string& directory) {
-  const std::string& text = table.find("track")->text();
-  const std::string path = (std::filesystem::path(directory) / text).string();
+  const Item item = *table.find("track");
+  const std::string& text = item.text();
+  const std::string path = item.readable_file(directory);
   const auto smooth = table.find("smooth");
   const auto scale = table.find("position_scale");
   const double factor = scale ? scale->number(limits::scale) : 1.0;

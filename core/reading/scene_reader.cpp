@@ -37,7 +37,7 @@ FrameTimes read_frame_table(const TableReader& table, const std::string& directo
         table.fail(key, "csv is given too; allowed: either csv or mean");
       }
     }
-    return read_frame_csv((std::filesystem::path(directory) / csv->text()).string());
+    return read_frame_csv(csv->readable_file(directory));
   }
   const auto number = [&table](std::string_view key, const Range& range, double fallback) {
     const auto item = table.find(key);

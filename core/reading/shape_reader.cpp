@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <stdexcept>
 #include <utility>
 
@@ -88,8 +87,7 @@ std::vector<Vector3> written_points(const Item& item) {
 
 MeshData mesh_of_file(const Item& item, const TableReader& table, const std::string& directory) {
   const auto unit = table.find("unit");
-  const std::filesystem::path path = std::filesystem::path(directory) / item.text();
-  return read_mesh(path.string(), unit ? unit->number(unit_range) : 1.0).mesh;
+  return read_mesh(item.readable_file(directory), unit ? unit->number(unit_range) : 1.0).mesh;
 }
 
 Shape read_hull(const TableReader& table, const std::string& directory) {

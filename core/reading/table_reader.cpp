@@ -8,6 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
 
 namespace kairos {
 inline namespace core {
@@ -63,6 +66,17 @@ const std::string& Item::text() const {
     return *text;
   }
   fail(fmt::format("is {}; allowed: a string in quotes", value_->type_name()));
+}
+
+std::string Item::readable_file(const std::string& folder) const {
+  const std::string path = (std::filesystem::path(folder) / text()).string();
+  std::error_code ignored;
+  if (path.find('\0') != std::string::npos || std::filesystem::is_directory(path, ignored) ||
+      !std::ifstream(path)) {
+    fail(fmt::format("names no file that can be opened, '{}'; allowed: the path of a readable file",
+                     path.c_str()));  // up to a zero byte
+  }
+  return path;
 }
 
 std::size_t Item::choice(std::span<const std::string_view> names) const {

@@ -51,6 +51,8 @@ class Item {
   [[nodiscard]] bool flag() const;
   /// A string.
   [[nodiscard]] const std::string& text() const;
+  /// A path, relative to this folder or absolute, of a file that can be opened.
+  [[nodiscard]] std::string readable_file(const std::string& folder) const;
   /// Index of the text among `names`.
   [[nodiscard]] std::size_t choice(std::span<const std::string_view> names) const;
   /// A list of `count` finite numbers in the range.
