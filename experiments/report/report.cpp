@@ -185,8 +185,8 @@ constexpr Headline headlines[] = {
      "thousand times nearer."},
     {"contact-truths",
      "Blocks, balls, stacks and joints in contact that lasts: from event to event a run gives the "
-     "numbers that are known to ten digits and more; schemes that step learn at the end of a frame "
-     "what began inside it."},
+     "numbers that are known to nine digits and more; schemes that step learn at the end of a "
+     "frame what began inside it."},
     {"real-time", "Frames that come late do not concern event-driven: it draws what it knows."},
     {"extremes",
      "From impact to impact, by certified or by conservative advancement, nothing is wrong in "
