@@ -386,24 +386,28 @@ double JointSystem::pass_on(Instant t, std::span<const BodyState> states,
   return pass_on(changes, work);
 }
 
-Eigen::MatrixXd JointSystem::passing(Instant t, std::span<const BodyState> states) const {
+JointSystem::Passing JointSystem::passing(Instant t, std::span<const BodyState> states) const {
   Workspace& work = workspace();
   evaluate(t, states, work);
   factor(states, work);
   const auto n = static_cast<Eigen::Index>(6 * states.size());
-  Eigen::MatrixXd leaves(n, n);
+  Passing passing{Eigen::MatrixXd(n, n), Eigen::VectorXd(driven_ ? n : 0)};
+  Eigen::MatrixXd& leaves = passing.leaves;
   std::vector<Twist> changes;
   for (Eigen::Index c = 0; c < n; ++c) {
     changes.assign(states.size(), Twist{});
     Twist& of_one = changes[static_cast<std::size_t>(c / 6)];
     (c % 6 < 3 ? of_one.linear : of_one.angular)[c % 3] = 1.0;
-    (void)pass_on(changes, work);
+    const double driven = pass_on(changes, work);
+    if (driven_) {
+      passing.driven[c] = driven;
+    }
     for (std::size_t k = 0; k < changes.size(); ++k) {
       leaves.block<3, 1>(static_cast<Eigen::Index>(6 * k), c) = changes[k].linear;
       leaves.block<3, 1>(static_cast<Eigen::Index>(6 * k + 3), c) = changes[k].angular;
     }
   }
-  return leaves;
+  return passing;
 }
 
 /// With the workspace's rows, which are factored.

@@ -69,9 +69,12 @@ class JointSystem {
   void multipliers(Instant t, std::span<const BodyState> states, std::span<const Wrench> wrenches,
                    std::span<double> x) const;
 
-  /// What `pass_on` makes of changes of velocity, as a matrix: six rows and columns for each body,
-  /// its linear part first.
-  [[nodiscard]] Eigen::MatrixXd passing(Instant t, std::span<const BodyState> states) const;
+  /// What `pass_on` makes of changes of velocity: six numbers for each body, its linear part first.
+  struct Passing {
+    Eigen::MatrixXd leaves;  ///< times the changes: those that are left
+    Eigen::VectorXd driven;  ///< times the changes: work of driven sides, J; empty: there are none
+  };
+  [[nodiscard]] Passing passing(Instant t, std::span<const BodyState> states) const;
 
   /// Changes of velocity by impulses, one per body: replaces those without joints by those that are
   /// left when the joints have passed the impulses on. Returns the work of driven sides, J.

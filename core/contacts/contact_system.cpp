@@ -26,7 +26,7 @@ void ContactSystem::add(std::size_t a, std::size_t b, const Vector3& point,
   rows.push_back({a, b, direction, point - bodies[a].position, point - bodies[b].position});
 }
 
-std::pair<Eigen::VectorXd, Eigen::VectorXd> ContactSystem::passed(const ContactRow& row) const {
+std::pair<Eigen::VectorXd, Eigen::VectorXd> ContactSystem::unpassed(const ContactRow& row) const {
   const auto n = static_cast<Eigen::Index>(6 * bodies.size());
   std::pair<Eigen::VectorXd, Eigen::VectorXd> out{Eigen::VectorXd::Zero(n),
                                                   Eigen::VectorXd::Zero(n)};
@@ -40,8 +40,22 @@ std::pair<Eigen::VectorXd, Eigen::VectorXd> ContactSystem::passed(const ContactR
   };
   side(row.a, row.arm_a, -1.0);
   side(row.b, row.arm_b, 1.0);
+  return out;
+}
+
+std::pair<Eigen::VectorXd, Eigen::VectorXd> ContactSystem::passed(const ContactRow& row) const {
+  std::pair<Eigen::VectorXd, Eigen::VectorXd> out = unpassed(row);
   joints->pass_on(out.first, out.second);
   return out;
+}
+
+double ContactSystem::driven_work(const Eigen::VectorXd& impulses) const {
+  double work = 0.0;
+  for (std::size_t i = 0; i < rows.size() && joints != nullptr && joints->driven(); ++i) {
+    const double p = impulses[static_cast<Eigen::Index>(i)];
+    work += p == 0.0 ? 0.0 : p * joints->driven_work(unpassed(rows[i]).second).sum();
+  }
+  return work;
 }
 
 Eigen::MatrixXd ContactSystem::coupling_through_joints() const {
@@ -121,14 +135,18 @@ void ContactSystem::push(const Eigen::VectorXd& impulses, std::vector<Twist>& v)
   }
 }
 
-void ContactSystem::project(std::vector<Twist>& v) const {
+double ContactSystem::project(std::vector<Twist>& v) const {
+  double driven = 0.0;
   if (rows.empty()) {
-    return;
+    return driven;
   }
   const LeastNorm decomposition(coupling());
   for (int k = 0; k < 2; ++k) {
-    push(-decomposition.solve(rates(v)), v);
+    const Eigen::VectorXd impulses = -decomposition.solve(rates(v));
+    push(impulses, v);
+    driven += driven_work(impulses);
   }
+  return driven;
 }
 
 void ContactSystem::undo_where_faster(const std::vector<Twist>& before,

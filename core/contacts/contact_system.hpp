@@ -50,15 +50,19 @@ struct ContactSystem {
   [[nodiscard]] Eigen::VectorXd rates(const std::vector<Twist>& v) const;
   /// v += M^-1 J^T impulse.
   void push(const Eigen::VectorXd& impulses, std::vector<Twist>& v) const;
+  /// What driven sides of joints do while these pass on such impulses, J.
+  [[nodiscard]] double driven_work(const Eigen::VectorXd& impulses) const;
   /// Projects v onto J v = 0, in the metric of the kinetic energy; twice, so that only the roundoff
-  /// of a residual is left.
-  void project(std::vector<Twist>& v) const;
+  /// of a residual is left. Returns `driven_work` of that.
+  double project(std::vector<Twist>& v) const;
   /// Undoes a change of linear velocities (from `before` to `v`) for bodies that it moves along a
   /// row faster than before, unless the difference is a small part of their speed.
   void undo_where_faster(const std::vector<Twist>& before, std::vector<Twist>& v) const;
 
  private:
-  /// Of a row among joints, six numbers for each body: J, and M^-1 J^T as joints pass it on.
+  /// Of a row, six numbers for each body: J, and M^-1 J^T.
+  [[nodiscard]] std::pair<Eigen::VectorXd, Eigen::VectorXd> unpassed(const ContactRow& row) const;
+  /// The same among joints, M^-1 J^T as these pass it on.
   [[nodiscard]] std::pair<Eigen::VectorXd, Eigen::VectorXd> passed(const ContactRow& row) const;
   [[nodiscard]] Eigen::MatrixXd coupling_through_joints() const;
 };

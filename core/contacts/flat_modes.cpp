@@ -149,7 +149,7 @@ class Attempt {
     for (std::size_t p = 0; p < pressed.size() && !options_.unite; ++p) {
       pressed[p] = mode_.kept[p] != 0 && mode_.pressing[p] > 0.0 ? 1 : 0;
     }
-    rows_of(pressed).project(mode_.velocities);
+    (void)rows_of(pressed).project(mode_.velocities);
     // A patch that touches without pressing is kept as long as it does not move.
     for (std::size_t r = 0; r < of_row_.size(); ++r) {
       const std::size_t p = of_row_[r];
@@ -159,8 +159,8 @@ class Attempt {
       }
     }
     const ContactSystem held = rows_of(mode_.kept);
-    held.project(mode_.velocities);
-    held.project(mode_.accelerations);
+    (void)held.project(mode_.velocities);
+    (void)held.project(mode_.accelerations);
     if (std::none_of(mode_.kept.begin(), mode_.kept.end(), [](char k) { return k != 0; })) {
       return refuse("nothing stays in touch");
     }

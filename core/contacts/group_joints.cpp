@@ -1,7 +1,5 @@
 #include "core/contacts/group_joints.hpp"
 
-#include "core/joint_system.hpp"
-
 #include <algorithm>
 
 namespace kairos {
@@ -38,7 +36,7 @@ GroupJoints::GroupJoints(std::span<const GroupMechanism> mechanisms, Instant t,
 }
 
 void GroupJoints::pass_on(Eigen::VectorXd& changes) const {
-  for (const Passing& mechanism : mechanisms_) {
+  for (const Mechanism& mechanism : mechanisms_) {
     const std::size_t n = mechanism.places.size();
     Eigen::VectorXd own(static_cast<Eigen::Index>(6 * n));
     const auto at = [](std::size_t k) { return static_cast<Eigen::Index>(6 * k); };
@@ -48,7 +46,7 @@ void GroupJoints::pass_on(Eigen::VectorXd& changes) const {
     if (own.isZero(0.0)) {
       continue;
     }
-    const Eigen::VectorXd left = mechanism.leaves * own;
+    const Eigen::VectorXd left = mechanism.passing.leaves * own;
     for (std::size_t k = 0; k < n; ++k) {
       changes.segment<6>(at(mechanism.places[k])) = left.segment<6>(at(k));
     }
@@ -61,6 +59,26 @@ void GroupJoints::pass_on(const Eigen::VectorXd& asks, Eigen::VectorXd& gives) c
   if (asks.dot(gives) <= blocked * before) {
     gives.setZero();
   }
+}
+
+Eigen::VectorXd GroupJoints::driven_work(const Eigen::VectorXd& changes) const {
+  Eigen::VectorXd work = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(mechanisms_.size()));
+  for (std::size_t m = 0; m < mechanisms_.size(); ++m) {
+    const Mechanism& mechanism = mechanisms_[m];
+    for (std::size_t k = 0; k < mechanism.places.size() && mechanism.passing.driven.size() > 0;
+         ++k) {
+      const auto at = [](std::size_t i) { return static_cast<Eigen::Index>(6 * i); };
+      work[static_cast<Eigen::Index>(m)] += mechanism.passing.driven.segment<6>(at(k)).dot(
+          changes.segment<6>(at(mechanism.places[k])));
+    }
+  }
+  return work;
+}
+
+bool GroupJoints::driven() const {
+  return std::any_of(mechanisms_.begin(), mechanisms_.end(), [](const Mechanism& mechanism) {
+    return mechanism.passing.driven.size() > 0;
+  });
 }
 
 std::shared_ptr<const GroupJoints> group_joints(std::span<const GroupMechanism> mechanisms,
@@ -80,13 +98,15 @@ bool put_positions_onto_joints(std::span<const GroupMechanism> mechanisms, Insta
   return converged;
 }
 
-void put_velocities_onto_joints(std::span<const GroupMechanism> mechanisms, Instant t,
-                                std::span<BodyState> states) {
+double put_velocities_onto_joints(std::span<const GroupMechanism> mechanisms, Instant t,
+                                  std::span<BodyState> states) {
+  double driven = 0.0;
   for (const GroupMechanism& mechanism : mechanisms) {
     std::vector<BodyState> own = states_of(mechanism, states);
-    (void)mechanism.joints->project_velocities(t, own);
+    driven += mechanism.joints->project_velocities(t, own).driven;
     put_back(mechanism, own, states);
   }
+  return driven;
 }
 
 void add_mechanism_forces(const GroupMechanism& mechanism, std::span<const std::size_t> place,

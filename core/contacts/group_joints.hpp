@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/force.hpp"
+#include "core/joint_system.hpp"
 
 #include <Eigen/Core>
 
@@ -11,8 +12,6 @@
 
 namespace kairos {
 inline namespace core {
-
-class JointSystem;
 
 /// Bodies of a contact group that joints hold together: all of an island.
 struct GroupMechanism {
@@ -34,13 +33,22 @@ class GroupJoints {
   void pass_on(Eigen::VectorXd& changes) const;
   /// The same of what a push along `asks` gives; nothing where joints block it.
   void pass_on(const Eigen::VectorXd& asks, Eigen::VectorXd& gives) const;
+  /// What driven sides of joints do while these pass on changes of velocity, six numbers for each
+  /// body as they would be without joints: J, by mechanism. Of accelerations: W.
+  [[nodiscard]] Eigen::VectorXd driven_work(const Eigen::VectorXd& changes) const;
+  /// Whether some are driven.
+  [[nodiscard]] bool driven() const;
+  /// Of a mechanism its first body's place in the group.
+  [[nodiscard]] std::size_t first_of(std::size_t mechanism) const {
+    return mechanisms_[mechanism].places.front();
+  }
 
  private:
-  struct Passing {
+  struct Mechanism {
     std::vector<std::size_t> places;
-    Eigen::MatrixXd leaves;
+    JointSystem::Passing passing;
   };
-  std::vector<Passing> mechanisms_;
+  std::vector<Mechanism> mechanisms_;
 };
 
 /// Of a group whose bodies these are by place; null: no joints.
@@ -51,8 +59,9 @@ class GroupJoints {
 /// position fits.
 [[nodiscard]] bool put_positions_onto_joints(std::span<const GroupMechanism> mechanisms, Instant t,
                                              std::span<BodyState> states);
-void put_velocities_onto_joints(std::span<const GroupMechanism> mechanisms, Instant t,
-                                std::span<BodyState> states);
+/// Returns the work of driven sides in that, J.
+double put_velocities_onto_joints(std::span<const GroupMechanism> mechanisms, Instant t,
+                                  std::span<BodyState> states);
 
 /// Adds the forces of mechanisms and of their joints to those that act on the bodies of a group.
 /// `place`: of a body of the group among `states` and `wrenches`.

@@ -91,7 +91,7 @@ class Jams {
     std::vector<Twist> v(state_.bodies.size());
     ContactSystem{state_.bodies, {push}, state_.joints}.push(Eigen::VectorXd::Ones(1), v);
     if (!held.rows.empty()) {
-      held.project(v);
+      (void)held.project(v);
     }
     return held.rate(local_[k].rows[0], v) <= 0.0;
   }
@@ -121,6 +121,7 @@ class Jams {
       bool any = false;
       for (std::size_t k = 0; k < n; ++k) {
         found.struck[k] = impulse[k].isZero(0.0) ? 0 : 1;
+        found.driven += local_[k].driven_work(impulse[k]);
         any = any || (coupling_[k] * impulse[k]).norm() > 4.0 * roundoff();
       }
       return any ? std::optional(std::move(found)) : std::nullopt;

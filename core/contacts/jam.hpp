@@ -13,6 +13,7 @@ struct Jam {
   std::vector<Twist> velocities;  ///< by body
   std::vector<char> struck;       ///< by touch: it took an impulse
   bool tangential = false;        ///< nothing approached: an impact at no speed
+  double driven = 0.0;            ///< work of what joints hang on in that, J
 };
 
 /// An impulse that changes how bodies in touch slide, where no forces are known. Nothing else than:

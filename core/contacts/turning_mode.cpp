@@ -40,7 +40,9 @@ class Search {
     }
     mode_.solves = forces_.solves();
     if (mode_.refusal.empty()) {
-      mode_.velocities = held_velocities(state_, forces_.now(), mode_.choices);
+      HeldVelocities held = held_velocities(state_, forces_.now(), mode_.choices);
+      mode_.velocities = std::move(held.of);
+      mode_.driven = held.driven;
     }
     return std::move(mode_);
   }
@@ -323,8 +325,8 @@ TurningMode turning_mode(const TurningState& state, double still) {
   return Search(state, still).result();
 }
 
-std::vector<Twist> held_velocities(const TurningState& state, const std::vector<TouchNow>& now,
-                                   const std::vector<FrictionChoice>& choices) {
+HeldVelocities held_velocities(const TurningState& state, const std::vector<TouchNow>& now,
+                               const std::vector<FrictionChoice>& choices) {
   ContactSystem held;
   held.bodies = state.bodies;
   held.joints = state.joints;
@@ -344,8 +346,8 @@ std::vector<Twist> held_velocities(const TurningState& state, const std::vector<
       row(n.cross(t1));
     }
   }
-  std::vector<Twist> velocities = velocities_of(state);
-  held.project(velocities);
+  HeldVelocities velocities{velocities_of(state)};
+  velocities.driven = held.project(velocities.of);
   return velocities;
 }
 
@@ -370,6 +372,7 @@ std::optional<Parting> parting(const TurningState& state) {
     return std::nullopt;
   }
   all.push(impulses.x, found.velocities);
+  found.driven = all.driven_work(impulses.x);
   for (const double impulse : impulses.x) {
     found.struck.push_back(impulse > 0.0 ? 1 : 0);
   }

@@ -15,6 +15,7 @@ struct TurningMode {
   std::vector<FrictionChoice> choices;  ///< by touch; directions are those of sliding
   TurningForces::Solution forces;
   std::vector<Twist> velocities;  ///< by body, with nothing left of what is held
+  double driven = 0.0;            ///< work of what joints hang on in that, J
   bool flies = false;             ///< nothing is held
   int solves = 0;
 };
@@ -31,14 +32,19 @@ inline constexpr double turning_roundoff = 1e-11;
 
 /// Velocities with nothing left along the normals of what is held, nor where it sticks: nearest, as
 /// the kinetic energy measures.
-[[nodiscard]] std::vector<Twist> held_velocities(const TurningState& state,
-                                                 const std::vector<TouchNow>& now,
-                                                 const std::vector<FrictionChoice>& choices);
+struct HeldVelocities {
+  std::vector<Twist> of;  ///< by body
+  double driven = 0.0;    ///< work of what joints hang on in that, J
+};
+[[nodiscard]] HeldVelocities held_velocities(const TurningState& state,
+                                             const std::vector<TouchNow>& now,
+                                             const std::vector<FrictionChoice>& choices);
 
 /// An impact without rebound.
 struct Parting {
   std::vector<Twist> velocities;  ///< by body
   std::vector<char> struck;       ///< by touch: it took an impulse
+  double driven = 0.0;            ///< work of what joints hang on in that, J
 };
 /// Velocities with which nothing approaches along the normals of the touches, nearest, as the
 /// kinetic energy measures; nothing where none are known.

@@ -418,7 +418,7 @@ class Step {
       put_onto_joints(end, held);
     }
     const TurningForces there(end);
-    const std::vector<Twist> velocities = held_velocities(end, there.now(), mode_.choices);
+    const std::vector<Twist> velocities = held_velocities(end, there.now(), mode_.choices).of;
     for (std::size_t k = 0; k < free_.size(); ++k) {
       const std::size_t i = free_[k];
       BodyState& state = step_.states[i];
@@ -438,7 +438,7 @@ class Step {
     renew(end);
     put_at_gaps(end, held);
     fits = put_positions_onto_joints(group_.mechanisms, t, end.states) && fits;
-    put_velocities_onto_joints(group_.mechanisms, t, end.states);
+    (void)put_velocities_onto_joints(group_.mechanisms, t, end.states);
     renew(end);
     if (!fits) {
       step_.refusal = "the joints fit no position at the end of a step";
@@ -461,6 +461,7 @@ class Step {
     Eigen::MatrixXd of_body =
         Eigen::MatrixXd::Zero(nodes, static_cast<Eigen::Index>(group_.bodies.size()));
     Eigen::MatrixXd leaks = of_body;
+    Eigen::MatrixXd of_driver = of_body;
     Eigen::MatrixXd of_pair =
         Eigen::MatrixXd::Zero(nodes, static_cast<Eigen::Index>(group_.pairs.size()));
     for (int j = 0; j < nodes; ++j) {
@@ -468,7 +469,7 @@ class Step {
       for (int k = 0; k < nodes; ++k) {
         powers(j, k) = k == 0 ? 1.0 : powers(j, k - 1) * u;
       }
-      power_at(u * step_.duration, of_body.row(j), of_pair.row(j), leaks.row(j));
+      power_at(u * step_.duration, of_body.row(j), of_pair.row(j), leaks.row(j), of_driver.row(j));
     }
     const Eigen::PartialPivLU<Square> interpolate(powers);
     const auto integrated = [&](const Eigen::VectorXd& values) {
@@ -490,6 +491,8 @@ class Step {
     }
     for (Eigen::Index i = 0; i < of_body.cols(); ++i) {
       step_.leaked.push_back(integrated(leaks.col(i)));
+      step_.driven.push_back(of_driver.col(i).isZero(0.0) ? Polynomial<3>()
+                                                          : integrated(of_driver.col(i)));
     }
     if (free_.size() == 1) {
       leak_of_one();
@@ -509,7 +512,7 @@ class Step {
   }
 
   template <typename Bodies, typename Pairs>
-  void power_at(double s, Bodies of_body, Pairs of_pair, Bodies leaks) {
+  void power_at(double s, Bodies of_body, Pairs of_pair, Bodies leaks, Bodies of_driver) {
     const TurningState state = at(s);
     TurningForces forces(state);
     const auto choices = directed(mode_, forces.now(), slow_);
@@ -536,6 +539,33 @@ class Step {
       const std::size_t first = group_.inertia[touch.a].mass > 0.0 ? touch.a : touch.b;
       leaks[static_cast<Eigen::Index>(first)] += on_a + on_b - rubbed;
     }
+    if (state.joints != nullptr && state.joints->driven()) {
+      const Eigen::VectorXd power = driven_power(state, forces, found);
+      for (Eigen::Index m = 0; m < power.size(); ++m) {
+        of_driver[static_cast<Eigen::Index>(state.joints->first_of(static_cast<std::size_t>(m)))] +=
+            power[m];
+      }
+    }
+  }
+
+  /// Of what joints hang on, because contact forces act: W, by mechanism.
+  static Eigen::VectorXd driven_power(const TurningState& state, const TurningForces& forces,
+                                      const TurningForces::Solution& found) {
+    Eigen::VectorXd given =
+        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(6 * state.bodies.size()));
+    for (std::size_t k = 0; k < state.touches.size(); ++k) {
+      const Touch& touch = state.touches[k];
+      const TouchNow& now = forces.now()[k];
+      for (const auto& [i, point, sign] :
+           {std::tuple{touch.a, now.point_a, -1.0}, {touch.b, now.point_b, 1.0}}) {
+        const GroupBody& body = state.bodies[i];
+        const Vector3 force = sign * found.force[k];
+        const auto at = static_cast<Eigen::Index>(6 * i);
+        given.segment<3>(at) += body.inverse_mass * force;
+        given.segment<3>(at + 3) += body.inverse_inertia * (point - body.position).cross(force);
+      }
+    }
+    return state.joints->driven_work(given);
   }
 
   const TurningGroup& group_;

@@ -62,6 +62,9 @@ struct TurningStep {
   /// By place: x, what the contact forces of the touches of which it is the first free body gave
   /// that is no friction: truncation, J.
   std::vector<Polynomial<3>> leaked;
+  /// By place: x, what the joints of the mechanism of which it is the first body take from what
+  /// drives them, because contact forces act, J.
+  std::vector<Polynomial<3>> driven;
   std::int64_t evaluations = 0;
 };
 

@@ -107,9 +107,12 @@ void EventMotions::book(Flow& flow, Instant t) {
   const bool exact =
       !turns && (flow.held || (flow.exact && !run_.model.tumbles(run_.model.island_of(first))));
   Leg leg{flow.island, booked, to, given, exact, roundoff, riding_work(flow, t)};
+  double driven = 0.0;
   if (turns) {
     for (const BodyIndex i : flow.island.bodies) {
-      leg.contact_work += book_turn(i, from, t);
+      const TurnedWork turned = book_turn(i, from, t);
+      leg.contact_work += turned.on_body;
+      driven += turned.through_joints;
     }
   }
   if (flow.island.forces.empty()) {
@@ -122,7 +125,7 @@ void EventMotions::book(Flow& flow, Instant t) {
     if (flow.island.joints != nullptr) {
       leg.contact_work += whole ? run_.account.projected(flow.projection) : 0.0;
       leg.riding_work = run_.account.joint_work(flow.island, motions, from, duration) +
-                        (whole ? flow.projection.driven : 0.0);
+                        (whole ? flow.projection.driven : 0.0) + driven;
     }
     run_.account.leg(leg, motions, from, duration);
   }
@@ -132,14 +135,13 @@ void EventMotions::book(Flow& flow, Instant t) {
   booked_until(flow) = t;
 }
 
-/// Work of contact forces on a body that turns in touch, J; books the part of it that is
-/// truncation.
-double EventMotions::book_turn(BodyIndex i, Instant from, Instant to) {
+/// What contact forces do to a body that turns in touch; books the part of it that is truncation.
+EventMotions::TurnedWork EventMotions::book_turn(BodyIndex i, Instant from, Instant to) {
   const Polynomial<3>& worked = ties(i).worked.front();
   const Instant start = start_of(i);
   const Vector3 done = worked(to - start) - worked(from - start);
   run_.ledger.add(EnergyLine::truncation, done.y());
-  return done.x();
+  return {done.x(), done.z()};
 }
 
 /// Books the work of friction, belts and driven surfaces on body i. Forces and angular

@@ -559,6 +559,8 @@ bool EventContacts::strike_group(const Event& first, double approach) {
       run_.account.struck(i, before.back(), now);
     }
   }
+  run_.ledger.add(EnergyLine::projection, -impact.driven);
+  run_.ledger.add(EnergyLine::driven_work, impact.driven + impact.system.driven_work(impulses));
   // Each row changed the energy by p (u- + u+) / 2, beside the work of driven bodies.
   for (std::size_t r = 0; r < impact.system.rows.size(); ++r) {
     const ContactRow& row = impact.system.rows[r];

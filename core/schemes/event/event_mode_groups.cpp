@@ -21,21 +21,24 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Where bodies rest on more points than they have ways to move, rates at these contradict each
 /// other by what the points are off, and no velocities make all of them nothing. What is left is
-/// then to press and not to part: what holds does not strike what draws away.
-void press_what_contradicts(const ContactSystem& held, std::span<const double> radius,
-                            std::vector<Twist>& v) {
+/// then to press and not to part: what holds does not strike what draws away. Returns the work of
+/// what joints hang on in that, J.
+double press_what_contradicts(const ContactSystem& held, std::span<const double> radius,
+                              std::vector<Twist>& v) {
   double fastest = 0.0;
   for (std::size_t k = 0; k < v.size(); ++k) {
     fastest = std::max(fastest, v[k].linear.norm() + v[k].angular.norm() * radius[k]);
   }
   const Eigen::VectorXd left = held.rates(v);
   if (left.size() == 0 || left.maxCoeff() <= 64.0 * epsilon * fastest) {
-    return;
+    return 0.0;
   }
   const Complementarity pull = solve_complementarity(held.coupling(), -left);
-  if (pull.solved) {
-    held.push(-pull.x, v);
+  if (!pull.solved) {
+    return 0.0;
   }
+  held.push(-pull.x, v);
+  return held.driven_work(-pull.x);
 }
 
 double finite_radius(const Shape& shape) {
@@ -116,9 +119,7 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
     found.group.round.push_back(std::holds_alternative<Sphere>(run_.model.shape(i)) ? 1 : 0);
     if (run_.model.is_free(i)) {
       const Island& island = run_.model.islands()[run_.model.island_of(i)];
-      if (island.joints != nullptr && island.joints->driven()) {
-        found.refusal = "'" + run_.model.body(i).name + "' hangs on a joint that is driven";
-      } else if (island.joints != nullptr) {
+      if (island.joints != nullptr) {
         found.hangs = "'" + run_.model.body(i).name + "' hangs on a joint";
       } else if (island.bodies.size() > 1) {
         found.refusal = "'" + run_.model.body(i).name + "' hangs on another by a force";
@@ -302,20 +303,20 @@ void EventModes::still_hold(ContactGroup& group, GroupImpact& impact) const {
       }
     }
   }
-  held.project(impact.velocities);
-  press_what_contradicts(held, group.radius, impact.velocities);
+  impact.driven += held.project(impact.velocities);
+  impact.driven += press_what_contradicts(held, group.radius, impact.velocities);
 }
 
 EventModes::GroupImpact EventModes::impact_group(const BodyPair& pair, Instant t, bool all) {
   const std::array<BodyIndex, 2> seeds{pair.first, pair.second};
   Gathered found = gather(seeds, t, {.impact = true, .held_only = !all});
+  GroupImpact impact;
   if (!found.mechanisms.empty()) {
-    put_velocities_onto_joints(found.mechanisms, t, found.states);
+    impact.driven = put_velocities_onto_joints(found.mechanisms, t, found.states);
     for (std::size_t k = 0; k < found.bodies.size(); ++k) {
       found.group.velocities[k] = found.states[k].twist;
     }
   }
-  GroupImpact impact;
   impact.system.joints = group_joints(found.mechanisms, t, found.states);
   impact.refusal = std::move(found.refusal);
   impact.bodies = std::move(found.bodies);

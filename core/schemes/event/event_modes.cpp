@@ -292,6 +292,10 @@ void EventModes::commit(const Gathered& found, const FlatMode& mode, Instant t, 
     dissipated += run_.account.gained(i, before, now);
     run_.account.struck(i, before, now);
   }
+  if (mode.driven != 0.0) {
+    run_.ledger.add(EnergyLine::driven_work, mode.driven);
+    dissipated -= mode.driven;
+  }
   if (dissipated != 0.0) {
     const bool hopped = mode.slip.empty() || std::any_of(mode.rate.begin(), mode.rate.end(),
                                                          [](double rate) { return rate > 0.0; });

@@ -100,6 +100,7 @@ class EventModes {
     Eigen::VectorXd restitution;  ///< by row
     std::vector<Twist> velocities;
     std::vector<double> gaps;  ///< by row, m
+    double driven = 0.0;       ///< work of what joints hang on in what led to the velocities, J
     std::string refusal;       ///< why it is none
   };
   /// What the pair, whose states are at `now`, is in touch with: all of it, or what is held.

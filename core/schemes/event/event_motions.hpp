@@ -105,8 +105,9 @@ class EventMotions {
   void hold(BodyIndex i, Instant t, const Motion& motion);
 
   /// Body i, alone in its island, turns while it touches: it moves along `motion` from `now` to
-  /// `end`. `worked`, from the motion's start on, J: what contact forces do to it as the x, and
-  /// what of all that they do is truncation, told with this body, as the y.
+  /// `end`. `worked`, from the motion's start on, J: what contact forces do to it as the x, what of
+  /// all that they do is truncation as the y, and as the z what drives the joints of its mechanism
+  /// does because of them; the last two are told with one body each.
   struct Turn {
     Motion motion;
     BodyState end;
@@ -266,7 +267,11 @@ class EventMotions {
   void book(Flow& flow, Instant t);
   void book_surface_forces(BodyIndex i, Instant t);
   void begin_turn(BodyIndex i, Flow& flow, std::size_t place, const Turn& turn);
-  [[nodiscard]] double book_turn(BodyIndex i, Instant from, Instant to);
+  struct TurnedWork {
+    double on_body = 0.0;         ///< of contact forces, J
+    double through_joints = 0.0;  ///< of what its mechanism hangs on, because these act, J
+  };
+  [[nodiscard]] TurnedWork book_turn(BodyIndex i, Instant from, Instant to);
   [[nodiscard]] double riding_work(const Flow& flow, Instant t);
   [[nodiscard]] double new_roundoff(Flow& flow, Instant t);
 

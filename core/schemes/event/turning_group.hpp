@@ -12,6 +12,7 @@ struct EventModes::Turning {
   TurningMode mode;
   TurningStep step;
   std::vector<char> jammed;  ///< by touch: friction stopped it by an impulse; empty: none
+  double driven = 0.0;       ///< work of what joints hang on, before that of the mode, J
 
   [[nodiscard]] EventMotions::Turn turn_of(std::size_t place) const {
     EventMotions::Turn turn{step.motions[place], step.states[place], step.worked[place]};
@@ -19,6 +20,10 @@ struct EventModes::Turning {
     turn.worked.resize(std::max(turn.worked.degree(), leaked.degree()));
     for (int k = 0; k <= leaked.degree(); ++k) {
       turn.worked[k].y() = leaked[k].x();
+    }
+    const Polynomial<3>& of_driver = step.driven[place];
+    for (int k = 0; k <= of_driver.degree(); ++k) {
+      turn.worked[k].z() = of_driver[k].x();
     }
     return turn;
   }

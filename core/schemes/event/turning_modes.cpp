@@ -321,7 +321,7 @@ std::string EventModes::add_touches(Gathered& found, Instant t, Turning& turning
     group.pairs.push_back(std::move(pair));
   }
   if (!group.mechanisms.empty()) {
-    put_velocities_onto_joints(group.mechanisms, t, group.start.states);
+    turning.driven = put_velocities_onto_joints(group.mechanisms, t, group.start.states);
     TurningState start = turning_state(group, t, free_states(group));
     start.touches = std::move(group.start.touches);
     group.start = std::move(start);
@@ -398,6 +398,7 @@ void EventModes::let_jam(const Gathered& found, Turning& turning, Instant t, dou
   if (mode.refusal.empty()) {
     turning.group.start = std::move(after);
     turning.mode = std::move(mode);
+    turning.driven += stopped->driven;
     if (stopped->tangential) {
       turning.jammed = std::move(stopped->struck);
     }
@@ -499,6 +500,7 @@ bool EventModes::part_ways(const Gathered& found, Turning& turning, Instant t, c
     return false;
   }
   turning.mode.velocities = std::move(apart->velocities);
+  turning.mode.driven = apart->driven;
   std::vector<Change> changes;
   for (std::size_t k = 0; k < apart->struck.size(); ++k) {
     const auto& [a, b] = found.pairs[turning.group.start.touches[k].pair];
@@ -536,6 +538,7 @@ bool EventModes::fly(const Gathered& found, const Turning& turning, Instant t, c
   FlatMode mode;
   mode.turns = true;
   mode.velocities = turning.mode.velocities;
+  mode.driven = turning.driven + turning.mode.driven;
   mode.accelerations = found.group.loads;
   mode.kept.assign(found.pairs.size(), 0);
   mode.slip.assign(found.pairs.size(), Slip::none);
@@ -568,6 +571,7 @@ void EventModes::carry_on(const Gathered& found, const Turning& turning, Instant
   FlatMode mode;
   mode.turns = true;
   mode.velocities = turning.mode.velocities;
+  mode.driven = turning.driven + turning.mode.driven;
   mode.accelerations = turning.mode.forces.accelerations;
   mode.kept.assign(n, 0);
   mode.pressing.assign(n, 0.0);
