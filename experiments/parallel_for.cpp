@@ -18,11 +18,13 @@ std::size_t default_threads() {
 std::vector<std::jthread> start_threads(std::size_t count, const std::function<void()>& work) {
   // Stacks must not take what the work itself needs: this is kept free until all have started, and
   // none works before. It is too little for an allocator's arena, which only one thread would use.
+  // Its pages are never touched: to fill them took longer than to answer a thousand queries.
   constexpr std::size_t reserve = std::size_t{48} << 20;  // bytes
   const auto started = std::make_shared<std::latch>(1);
   std::vector<std::jthread> threads;
   try {
-    const std::vector<char> kept(count > 0 ? reserve : 0);
+    std::vector<char> kept;
+    kept.reserve(count > 0 ? reserve : 0);
     threads.reserve(count);
     for (std::size_t t = 0; t < count; ++t) {
       threads.emplace_back([started, work] {

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Runs the program on mutated scenes, specs, queries and options, and watches how it ends.
 
-usage: mutate_program.py PROGRAM [--count N] [--first K] [--seed S] [--jobs J] [--seconds T] [--out DIR]
+usage: mutate_program.py FORKED_PROGRAM [--count N] [--first K] [--seed S] [--jobs J] [--seconds T] [--out DIR]
 
-Written from the manuals alone (scenes/README.md, experiments/README.md, `kairos --help`), not from
+FORKED_PROGRAM (build/PRESET/tests/fuzz/forked_program) is the program, started once and forked for each
+case. Written from the manuals alone (scenes/README.md, experiments/README.md, `kairos --help`), not from
 the readers. Each case is a function of (seed, number): `--first K --count 1` makes it again.
 
 A case is right if it ends by itself with exit code 0, 1 or 2, with a reason on stderr where it is
@@ -15,18 +16,19 @@ if not, it is a hang. Programs built with sanitizers report what they find.
 import argparse
 import collections
 import concurrent.futures
+import dataclasses
 import os
 import pathlib
 import pty
+import queue
 import random
 import re
-import resource
 import shutil
 import signal
 import subprocess
 import sys
 import tempfile
-import time
+import threading
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?(?![\w.])")
@@ -36,6 +38,9 @@ EXTREMES = ["0", "-0.0", "1", "-1", "2", "0.5", "1e-320", "1e-300", "1e-15", "1e
             "0x7fffffff", "1_000", "true", "\"\"", "[]", "{}", "[[]]", "\"x\"", "1979-05-27"]
 BYTES = ["\0", "\x01", "\x7f", "\xff", "\u2028", "\"", "'", "\\", "\n", "\r", "[", "]", "{", "}", "=",
          ".", ",", "#", "-", "e", "\"\"\"", "\\u0000", "../", "%", "{}", " " * 70, "a" * 70]
+# Of a sanitizer's allocator, which ends the program where others throw std::bad_alloc.
+NO_MEMORY = re.compile(r"AddressSanitizer: (allocator is )?out[- ]of[- ]memory|failed to allocate")
+FAULTS = ("signal", "sanitizer", "hang", "exit code", "silent")
 SANITIZER = re.compile(r"runtime error:|ERROR: \w*Sanitizer|Assertion .* failed")
 
 
@@ -46,7 +51,7 @@ def read(path):
 class Corpus:
     """What the project ships: texts to mutate, and the words in them."""
 
-    def __init__(self, program):
+    def __init__(self, program, folder):
         self.scenes = {p: read(p) for p in sorted((ROOT / "scenes").glob("*.toml"))}
         self.defs = {p: read(p) for p in sorted((ROOT / "scenes").glob("*.def"))}
         specs = {p: read(p) for p in sorted((ROOT / "experiments" / "specs").glob("*.toml"))}
@@ -56,9 +61,8 @@ class Corpus:
         self.words = sorted({w for t in texts for w in re.findall(r"[A-Za-z][\w-]+", t)})
         self.lines = sorted({line for t in texts for line in t.splitlines() if "=" in line})
         self.names = collections.defaultdict(list)
-        listing = subprocess.run([program, "list", "--csv"], capture_output=True, text=True,
-                                 check=True).stdout
-        for line in listing.splitlines()[1:]:
+        program.run(["list", "--csv"], folder, Bounds(seconds=60))
+        for line in read(program.out).splitlines()[1:]:
             kind, name = line.split(",")[:2]
             self.names[kind].append(name)
         self.keys = self.override_keys()
@@ -201,6 +205,9 @@ def case(number, seed, corpus, folder):
         # Small, so that 5 s are a fair bound: few repeats, short runs.
         text = re.sub(r"full = \d+", "full = 1", re.sub(r"quick = \d+", "quick = 1", text))
         text = re.sub(r"count = \d+", "count = 2", text)
+        if draw.random() < 0.97:
+            text = re.sub(r"\bduration = (\{[^}\n]*\}|\"[^\"\n]*\"|[-+.\de]+)",
+                          lambda _: f"duration = {10 ** draw.uniform(-3, -1):.3g}", text)
         words = ["sweep", file("spec.toml", text), "--threads", "1"]
         return words + (["--out", str(folder / "out")] if draw.random() < 0.2 else [])
     if kind < 0.92:
@@ -223,37 +230,66 @@ def case(number, seed, corpus, folder):
                         ["bench", draw.choice(corpus.words)]])
 
 
-def limits(seconds, memory):
-    def set_them():
-        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 2))
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        if memory:
-            resource.setrlimit(resource.RLIMIT_AS, (memory << 20, memory << 20))
-    return set_them
+@dataclasses.dataclass
+class Bounds:
+    seconds: int  # of processor time
+    wait: int = 600  # seconds until a program that does nothing is ended
+    memory: int = 3 << 30  # bytes beyond what the program has when it starts
+    whole: bool = True  # ends as the program does; else without what is done at its very end
 
 
-def at_work(command, folder, arguments):
+@dataclasses.dataclass
+class Ending:
+    signal: int  # 0: none
+    code: int
+    seconds: float  # of processor time
+
+
+class ForkedProgram:
+    """The program, started once; `run` forks it."""
+
+    def __init__(self, path, place):
+        environment = dict(os.environ,
+                           ASAN_OPTIONS="exitcode=99:detect_leaks=0:malloc_context_size=2",
+                           UBSAN_OPTIONS="exitcode=98:halt_on_error=1:print_stacktrace=1")
+        self.process = subprocess.Popen([path], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                        env=environment)
+        self.out, self.err = place / "stdout", place / "stderr"
+
+    def run(self, words, folder, bounds, err=None):
+        fields = [str(bounds.seconds), str(bounds.wait), str(bounds.memory), str(int(bounds.whole)),
+                  str(folder), str(self.out), str(err or self.err)] + words
+        fields = [str(len(fields))] + [field.replace("\0", "") for field in fields]
+        request = "".join(field + "\0" for field in fields)
+        self.process.stdin.write(request.encode(errors="surrogateescape"))
+        self.process.stdin.flush()
+        kind, number, seconds = self.process.stdout.readline().split()
+        number = int(number)
+        return Ending(number if kind == b"signal" else 0, number if kind == b"exit" else 0,
+                      float(seconds))
+
+
+def at_work(program, words, folder, bounds):
     """What the program says on a terminal in the time that it has."""
     master, slave = pty.openpty()
-    process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL,
-                               stdout=subprocess.DEVNULL, stderr=slave,
-                               preexec_fn=limits(arguments.seconds, 0))
-    os.close(slave)
-    shown = b""
-    until = time.monotonic() + 60
-    while time.monotonic() < until:
+    shown = []
+
+    def listen():
         try:
-            block = os.read(master, 4096)
+            while block := os.read(master, 65536):
+                shown[:] = [(b"".join(shown) + block)[-4096:]]
         except OSError:
-            break
-        if not block:
-            break
-        shown = (shown + block)[-4096:]
-    process.kill()
-    process.wait()
+            pass  # how a terminal ends
+
+    listener = threading.Thread(target=listen)
+    listener.start()
+    program.run(words, folder, bounds, os.ttyname(slave))
+    os.close(slave)
+    listener.join()
     os.close(master)
-    text = shown.decode(errors="replace").split("\r")
-    told = [line for line in text if re.search(r"[1-9]\d* events|\] [1-9]\d*/|[1-9]\d* of ", line)]
+    text = b"".join(shown).decode(errors="replace").split("\r")
+    told = [line for line in text if re.search(r"[1-9]\d* events|\] [1-9]\d*/|[1-9]\d* of |, one at ",
+                                                   line)]
     progress = [line for line in text if "] " in line]
     moved = re.search(r"\] ([\d.e+-]+) of", progress[-1]) if progress else None
     if told or (moved and float(moved.group(1)) > 0):
@@ -261,76 +297,94 @@ def at_work(command, folder, arguments):
     return None
 
 
-def judge(number, corpus, arguments):
-    """(verdict, detail) of a case."""
+def verdict_of(program, words, folder, bounds):
+    """(verdict, detail, seconds) of a command."""
+    end = program.run(words, folder, bounds)
+    err = read(program.err)
+    if NO_MEMORY.search(err):
+        return "no memory", err[-3000:], end.seconds
+    if SANITIZER.search(err) or end.code in (98, 99):
+        return "sanitizer", err[-3000:], end.seconds
+    if end.signal == signal.SIGALRM:
+        return "hang", "waits without working", end.seconds
+    if end.signal in (signal.SIGXCPU, signal.SIGKILL):
+        told = at_work(program, words, folder, bounds)
+        return ("at work", told, end.seconds) if told else ("hang", err[-500:], end.seconds)
+    if end.signal:
+        return "signal", f"{signal.Signals(end.signal).name} {err[-2000:]}", end.seconds
+    if end.code > 2:
+        return "exit code", f"{end.code} {err[-500:]}", end.seconds
+    if end.code > 0 and not err.strip():
+        return "silent", f"exit {end.code} without a reason", end.seconds
+    return f"exit {end.code}", err, end.seconds
+
+
+def judge(number, program, corpus, arguments):
+    """(verdict, detail, words, seconds) of a case."""
     with tempfile.TemporaryDirectory(prefix="kairos-mutant-") as name:
         folder = pathlib.Path(name)
         words = case(number, arguments.seed, corpus, folder)
-        words = [w.replace("\0", "") for w in words]
-        command = [arguments.program] + words
-        environment = dict(os.environ,
-                           ASAN_OPTIONS="exitcode=99:detect_leaks=0:hard_rss_limit_mb=3000",
-                           UBSAN_OPTIONS="exitcode=98:halt_on_error=1:print_stacktrace=1")
-        memory = 0 if arguments.sanitized else 3000
-        try:
-            done = subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL,
-                                  capture_output=True, env=environment, timeout=600,
-                                  preexec_fn=limits(arguments.seconds, memory), check=False)
-        except subprocess.TimeoutExpired:
-            done = None  # it waits, and works not even so long
-        err = done.stderr.decode(errors="replace") if done else ""
-        if done is None:
-            verdict = "hang", "waits without working"
-        elif SANITIZER.search(err) or done.returncode in (98, 99):
-            verdict = "sanitizer", err[-3000:]
-        elif done.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
-            told = at_work(command, folder, arguments)
-            verdict = ("at work", told) if told else ("hang", err[-500:])
-        elif done.returncode < 0:
-            verdict = "signal", f"{signal.Signals(-done.returncode).name} {err[-2000:]}"
-        elif done.returncode > 2:
-            verdict = "exit code", f"{done.returncode} {err[-500:]}"
-        elif done.returncode > 0 and not err.strip():
-            verdict = "silent", f"exit {done.returncode} without a reason"
-        else:
-            verdict = f"exit {done.returncode}", err
-        if verdict[0] in ("signal", "sanitizer", "hang", "exit code", "silent") and arguments.out:
+        verdict, detail, seconds = verdict_of(program, words, folder,
+                                              Bounds(arguments.seconds, whole=number % 16 == 0))
+        if verdict in FAULTS + ("no memory",) and arguments.out:
             kept = pathlib.Path(arguments.out) / f"case-{arguments.seed}-{number}"
             shutil.copytree(folder, kept, symlinks=True, dirs_exist_ok=True)
-            (kept / "verdict.txt").write_text(f"{verdict[0]}\n{words}\n{verdict[1]}\n")
-        return verdict[0], verdict[1], words
+            (kept / "verdict.txt").write_text(f"{verdict}\n{words}\n{detail}\n")
+        return verdict, detail, words, seconds
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("program")
+    parser.add_argument("program", help="forked_program of a build, best one with sanitizers")
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--seconds", type=int, default=5, help="of processor time for each")
-    parser.add_argument("--sanitized", action="store_true", help="no limit of address space")
     parser.add_argument("--out", help="folder for what went wrong")
+    parser.add_argument("--times", action="store_true", help="processor time by command, at the end")
     arguments = parser.parse_args()
-    arguments.program = os.path.abspath(arguments.program)
-    corpus = Corpus(arguments.program)
+    with tempfile.TemporaryDirectory(prefix="kairos-mutator-") as place:
+        run(arguments, pathlib.Path(place))
+
+
+def run(arguments, place):
+    path = os.path.abspath(arguments.program)
+    programs = queue.SimpleQueue()
+    for k in range(arguments.jobs):
+        (place / str(k)).mkdir()
+        programs.put(ForkedProgram(path, place / str(k)))
+    program = programs.get()
+    corpus = Corpus(program, place)
+    programs.put(program)
+
+    def one(number):
+        program = programs.get()
+        try:
+            return judge(number, program, corpus, arguments)
+        finally:
+            programs.put(program)
+
     print(f"seed {arguments.seed}, cases {arguments.first} to "
           f"{arguments.first + arguments.count - 1}", flush=True)
-    tally, reasons, wrong = collections.Counter(), [], 0
+    tally, spent, reasons, wrong = collections.Counter(), collections.defaultdict(list), [], 0
+    numbers = range(arguments.first, arguments.first + arguments.count)
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-        numbers = range(arguments.first, arguments.first + arguments.count)
-        jobs = {pool.submit(judge, n, corpus, arguments): n for n in numbers}
-        for job in concurrent.futures.as_completed(jobs):
-            verdict, detail, words = job.result()
+        for number, (verdict, detail, words, seconds) in zip(numbers, pool.map(one, numbers)):
             tally[verdict] += 1
+            spent[words[0], verdict].append(seconds)
             if verdict == "at work":
-                reasons.append((jobs[job], detail))
-            elif not verdict.startswith("exit ") or verdict == "exit code":
+                reasons.append((number, detail))
+            elif verdict in FAULTS:
                 wrong += 1
-                print(f"case {jobs[job]}: {verdict}: {' '.join(words)[:300]}\n  "
+                print(f"case {number}: {verdict}: {' '.join(words)[:300]}\n  "
                       f"{detail.strip()[-600:]}", flush=True)
-    for number, detail in sorted(reasons):
+    for number, detail in reasons:
         print(f"case {number}: at work after {arguments.seconds} s: {detail}")
+    if arguments.times:
+        for (command, verdict), times in sorted(spent.items(), key=lambda item: -sum(item[1])):
+            print(f"{sum(times):9.2f} s  {len(times):6} of {command}, {verdict}, "
+                  f"most {max(times):.2f} s")
     print(", ".join(f"{verdict}: {count}" for verdict, count in sorted(tally.items())))
     sys.exit(1 if wrong else 0)
 
