@@ -80,6 +80,8 @@ CellLayout::CellLayout(const Model& model, double tolerance, const CellSize& ask
     all *= static_cast<double>(counts[k]);
   }
   per_width = width.cwiseInverse();
+  // The more margin, the fewer cross: a body that turns back soon does not.
+  margin = std::max(margin, 0.5 * width.minCoeff() - radius - slack);
   while (all > 16.0 * n + 64.0) {
     std::size_t longest = 3;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -211,30 +213,47 @@ void CellGrid::look_around(const CellIndex& cell) const {
   }
 }
 
-/// Shows the cells at most one along each axis from a cell: `wide` is 0 or 1.
+/// Shows so many cells along each axis, one to three, the lowest of which is `low`.
 template <typename See>
-void CellGrid::see_block(const CellIndex& cell, const CellIndex& wide, const See& see) const {
-  const std::size_t* const x = along(cell[0] - wide[0], 0);
-  const std::size_t* const y = along(cell[1] - wide[1], 1);
-  const std::size_t* const z = along(cell[2] - wide[2], 2);
-  for (std::int64_t dz = 0; dz <= 2 * wide[2]; ++dz) {
-    for (std::int64_t dy = 0; dy <= 2 * wide[1]; ++dy) {
-      const Cell* const row = &at(y[dy] + z[dz]);
-      see(row[x[0]]);
-      if (wide[0] != 0) {
-        see(row[x[1]]);
-        see(row[x[2]]);
+void CellGrid::see_block(const CellIndex& low, const CellIndex& counts, const See& see) const {
+  const std::size_t* const x = along(low[0], 0);
+  const std::size_t* const y = along(low[1], 1);
+  const std::size_t* const z = along(low[2], 2);
+  const auto see_rows = [&](const auto& see_row) {
+    const Cell* const all = cells_.data() + begin_;
+    const std::size_t* const end_y = y + counts[1];
+    const std::size_t* const end_z = z + counts[2];
+    for (const std::size_t* of_z = z; of_z != end_z; ++of_z) {
+      const Cell* const layer = all + *of_z;
+      for (const std::size_t* of_y = y; of_y != end_y; ++of_y) {
+        see_row(layer + *of_y);
       }
     }
+  };
+  const std::size_t first = x[0];
+  const std::size_t second = x[1];
+  if (counts[0] == 1) {
+    see_rows([&](const Cell* row) { see(row[first]); });
+  } else if (counts[0] == 2) {
+    see_rows([&](const Cell* row) {
+      see(row[first]);
+      see(row[second]);
+    });
+  } else {
+    see_rows([&, third = x[2]](const Cell* row) {
+      see(row[first]);
+      see(row[second]);
+      see(row[third]);
+    });
   }
 }
 
-void CellGrid::block(const CellIndex& cell, const CellIndex& wide, std::vector<Id>& out) const {
+void CellGrid::block(const CellIndex& low, const CellIndex& counts, std::vector<Id>& out) const {
   constexpr std::size_t most_cells = 27;
   std::array<Id, 2 * most_cells> found;  // NOLINT(cppcoreguidelines-pro-type-member-init)
   std::size_t count = 0;
   Id all = 0;
-  see_block(cell, wide, [&found, &count, &all](const Cell& of) {
+  see_block(low, counts, [&found, &count, &all](const Cell& of) {
     // Both are copied, though most cells have none or one: this saves a branch.
     std::memcpy(&found[count], &of, sizeof of);
     count += 2 - (of.first >> 31U) - (of.second >> 31U);
@@ -242,7 +261,7 @@ void CellGrid::block(const CellIndex& cell, const CellIndex& wide, std::vector<I
   });
   out.insert(out.end(), found.data(), found.data() + count);
   if ((all & is_chain) != 0) {
-    see_block(cell, wide, [this, &out](const Cell& of) {
+    see_block(low, counts, [this, &out](const Cell& of) {
       if (is_link(of.second)) {
         append_chain(of.second, out);
       }
@@ -251,19 +270,27 @@ void CellGrid::block(const CellIndex& cell, const CellIndex& wide, std::vector<I
 }
 
 void CellGrid::entered(const CellIndex& before, const CellIndex& now, std::vector<Id>& out) const {
-  // Most often a body moves one cell on along one axis: to a layer of nine.
-  std::size_t axis = 3;
-  std::int64_t steps = 0;
+  std::array<std::int64_t, 3> steps{};
+  std::int64_t farthest = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    steps += std::abs(now[k] - before[k]);
-    axis = now[k] != before[k] ? k : axis;
+    steps[k] = now[k] - before[k];
+    farthest = std::max(farthest, std::abs(steps[k]));
   }
-  if (steps == 1) {
-    CellIndex layer = now;
-    CellIndex wide{1, 1, 1};
-    layer[axis] += now[axis] - before[axis];
-    wide[axis] = 0;
-    return block(layer, wide, out);
+  if (farthest <= 1) {  // a layer for each axis, most often one
+    CellIndex low{now[0] - 1, now[1] - 1, now[2] - 1};
+    CellIndex counts{3, 3, 3};
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (steps[k] == 0) {
+        continue;
+      }
+      const std::int64_t rest = steps[k] > 0 ? low[k] : low[k] + 1;
+      low[k] = now[k] + steps[k];
+      counts[k] = 1;
+      block(low, counts, out);
+      low[k] = rest;
+      counts[k] = 2;
+    }
+    return;
   }
   const auto known = [&](std::size_t k, std::int64_t c) { return std::abs(c - before[k]) <= 1; };
   for (std::int64_t z = now[2] - 1; z <= now[2] + 1; ++z) {

@@ -55,7 +55,9 @@ class CellGrid {
   /// Those are about to be asked for.
   void look_around(const CellIndex& cell) const;
   /// Bodies in the cell and its 26 neighbours, appended.
-  void around(const CellIndex& cell, std::vector<Id>& out) const { block(cell, {1, 1, 1}, out); }
+  void around(const CellIndex& cell, std::vector<Id>& out) const {
+    block({cell[0] - 1, cell[1] - 1, cell[2] - 1}, {3, 3, 3}, out);
+  }
   /// Of those around `now`, the ones that are not around `before`.
   void entered(const CellIndex& before, const CellIndex& now, std::vector<Id>& out) const;
   /// Notes that something that is in no cell reaches these cells, as far as they lie where bodies
@@ -119,8 +121,8 @@ class CellGrid {
   [[nodiscard]] const Cell& at(std::size_t place) const { return cells_[begin_ + place]; }
   [[nodiscard]] Cell& at(std::size_t place) { return cells_[begin_ + place]; }
   template <typename See>
-  void see_block(const CellIndex& cell, const CellIndex& wide, const See& see) const;
-  void block(const CellIndex& cell, const CellIndex& wide, std::vector<Id>& out) const;
+  void see_block(const CellIndex& low, const CellIndex& counts, const See& see) const;
+  void block(const CellIndex& low, const CellIndex& counts, std::vector<Id>& out) const;
   void append(const Cell& cell, std::vector<Id>& out) const;
   void append_chain(Id link, std::vector<Id>& out) const;
 

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 namespace kairos::ccd {
@@ -288,11 +289,11 @@ class Cells final : public Neighbourhood, public LooksAhead {
   [[nodiscard]] double corner(const CellIndex& cell, int k) const {
     return static_cast<double>(cell[static_cast<std::size_t>(k)]) * layout_.width[k];
   }
-  /// Whether p is in the cell or hardly beyond it: its next crossing is not at once.
+  /// Whether p is in the cell: where it is beyond, its next crossing would come sooner.
   [[nodiscard]] bool inside(const CellIndex& cell, const Vector3& p) const {
     for (int k = 0; k < 3; ++k) {
       const double x = p[k] - corner(cell, k);
-      if (!(x >= -0.5 * layout_.margin && x <= layout_.width[k] + 0.5 * layout_.margin)) {
+      if (!(x >= 0.0 && x <= layout_.width[k])) {
         return false;
       }
     }
@@ -301,14 +302,16 @@ class Cells final : public Neighbourhood, public LooksAhead {
 
   /// All that a body in the cell could touch.
   [[nodiscard]] Aabb reach(const CellIndex& cell) const {
-    const double beyond = layout_.margin + layout_.radius + layout_.slack;
     Aabb box;
     for (int k = 0; k < 3; ++k) {
-      const double x = corner(cell, k);
-      box.lower[k] = x - beyond;
-      box.upper[k] = x + layout_.width[k] + beyond;
+      std::tie(box.lower[k], box.upper[k]) = reach_along(k, corner(cell, k));
     }
     return box;
+  }
+  /// The same along an axis, of a cell that begins there.
+  [[nodiscard]] std::pair<double, double> reach_along(int k, double from) const {
+    const double beyond = layout_.margin + layout_.radius + layout_.slack;
+    return {from - beyond, from + layout_.width[k] + beyond};
   }
 
   /// When a body at p leaves the surroundings of its cell, at most 15/16 of the margin beyond it:
@@ -370,8 +373,9 @@ class Cells final : public Neighbourhood, public LooksAhead {
   void mark(BodyIndex i) {
     CellIndex low{};
     CellIndex high{};
+    const Aabb& swept = large_.swept(i);
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto [first, last] = cells_near(large_.swept(i), k);
+      const auto [first, last] = cells_near(swept, k);
       const std::int64_t end = layout_.first[k] + grid_.count(k) - 1;
       low[k] = layout_.first[k];
       if (first > static_cast<double>(low[k])) {
@@ -380,6 +384,18 @@ class Cells final : public Neighbourhood, public LooksAhead {
       high[k] = last < static_cast<double>(end)
                     ? static_cast<std::int64_t>(std::max(last, static_cast<double>(low[k])))
                     : end;
+      // These are rounded outwards; who asks in a cell asks for what its reach overlaps.
+      const auto axis = static_cast<int>(k);
+      const auto is_reached = [&](std::int64_t c) {
+        const auto [from, to] = reach_along(axis, static_cast<double>(c) * layout_.width[axis]);
+        return from <= swept.upper[axis] && swept.lower[axis] <= to;
+      };
+      while (low[k] <= high[k] && !is_reached(low[k])) {
+        ++low[k];
+      }
+      while (low[k] <= high[k] && !is_reached(high[k])) {
+        --high[k];
+      }
     }
     grid_.mark(low, high);
   }

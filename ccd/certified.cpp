@@ -25,6 +25,10 @@ class Certified final : public ShapeDetector, public BallDetector {
                                                         const Window& window) const override {
     return sphere_sphere_impact(a, b, window);
   }
+  [[nodiscard]] std::optional<BallMeeting> ball_meeting(const BallFlight& a, const BallFlight& b,
+                                                        const Window& window) const override {
+    return sphere_sphere_meeting(a, b, window);
+  }
   [[nodiscard]] Overlap ball_overlap(const Vector3& p_a, double radius_a, const Vector3& p_b,
                                      double radius_b) const override {
     return measure_overlap_of_balls(p_a, radius_a, p_b, radius_b);

@@ -3,7 +3,9 @@
 #include "ccd/rounding/roundoff.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 namespace kairos::ccd {
 
@@ -63,12 +65,38 @@ NearestPoints nearest_of_boxes(const RelativeBoxes& s) {
     const Vector3 in_b = s.axes_A.transpose() * (corner_a - s.d_A);
     keep(corner_a, s.d_A + s.axes_A * clamped(in_b, s.half_b));
   }
+  // An edge that is farther from the other box than that is nearest to none of its edges: of boxes
+  // that lie on each other, most are.
+  const double enough = best.distance * (1.0 + 1e-9) + 64.0 * s.error();
+  const auto is_far = [enough](const Vector3& centre, const Vector3& along, double half_length,
+                               const Vector3& half) {
+    const Vector3 beyond = centre.cwiseAbs() - half_length * along.cwiseAbs() - half;
+    return beyond.cwiseMax(0.0).squaredNorm() > enough * enough;
+  };
+  std::array<std::array<bool, 4>, 3> far_a{};
+  std::array<std::array<bool, 4>, 3> far_b{};
+  for (int k = 0; k < 3; ++k) {
+    const auto axis = static_cast<std::size_t>(k);
+    for (int c = 0; c < 4; ++c) {
+      const auto corner = static_cast<std::size_t>(c);
+      far_a[axis][corner] = is_far(s.axes_A.transpose() * (edge_centre(s.half_a, k, c) - s.d_A),
+                                   s.axes_A.row(k).transpose(), s.half_a[k], s.half_b);
+      far_b[axis][corner] = is_far(s.d_A + s.axes_A * edge_centre(s.half_b, k, c), s.axes_A.col(k),
+                                   s.half_b[k], s.half_a);
+    }
+  }
   for (int i = 0; i < 3; ++i) {
+    const auto& far_i = far_a[static_cast<std::size_t>(i)];
     for (int j = 0; j < 3; ++j) {
-      for (int c = 0; c < 16; ++c) {
+      const auto& far_j = far_b[static_cast<std::size_t>(j)];
+      for (std::size_t c = 0; c < 16; ++c) {
+        if (far_i[c % 4] || far_j[c / 4]) {
+          continue;
+        }
         const NearestPoints edges = nearest_of_segments(
-            edge_centre(s.half_a, i, c & 3), Vector3::Unit(i), s.half_a[i],
-            s.d_A + s.axes_A * edge_centre(s.half_b, j, c >> 2), s.axes_A.col(j), s.half_b[j]);
+            edge_centre(s.half_a, i, static_cast<int>(c % 4)), Vector3::Unit(i), s.half_a[i],
+            s.d_A + s.axes_A * edge_centre(s.half_b, j, static_cast<int>(c / 4)), s.axes_A.col(j),
+            s.half_b[j]);
         if (edges.distance < best.distance) {
           best = edges;
         }

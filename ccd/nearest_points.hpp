@@ -17,8 +17,8 @@ struct NearestPoints {
                                                 const Vector3& q, const Vector3& v, double tv);
 
 /// Nearest points of two disjoint boxes, in the frame of a: the least over the vertices of each
-/// against the other box, and over the edge pairs. Exhaustive, so that no degenerate configuration
-/// is special; meant for one answer, not for a loop.
+/// against the other box, and over the pairs of edges but those that are too far from the other
+/// box. Exhaustive otherwise, so that no degenerate configuration is special.
 [[nodiscard]] NearestPoints nearest_of_boxes(const RelativeBoxes& boxes);
 
 /// Centre of edge of a box of these half extents: `direction` 0..2 along the edge, `corner` 0..3

@@ -207,11 +207,36 @@ double touch_of(const Ball& a, const Ball& b, double size) {
   return 64.0 * u * (largest(a.p) + largest(b.p) + size);
 }
 
+FirstDescent descent_of(const DistanceGap& gap, const Ball& a, const Ball& b) {
+  return first_descent(gap, touch_of(a, b, gap.reach));
+}
+
+/// Whether both are ordinary, and accelerated alike.
+bool are_ordinary(const BallFlight& a, const BallFlight& b, const Window& window) {
+  return window.duration >= 0.0 && is_ordinary(a, window) && is_ordinary(b, window) &&
+         0.5 * a.acceleration == 0.5 * b.acceleration;
+}
+
+/// `retreat_from_overlap` of two balls on parabolas, without poses.
+double retreated(const Ball& a, const Ball& b, const Window& window, double t_lo) {
+  const double reach = a.radius + b.radius;
+  double back = ulp(t_lo);
+  for (int attempt = 0; attempt < most_retreats && t_lo > 0.0; ++attempt) {
+    const Instant t = window.start + t_lo;
+    if (!((b.at(t - b.start) - a.at(t - a.start)).squaredNorm() <= reach * reach)) {
+      break;
+    }
+    t_lo = std::max(0.0, t_lo - back);
+    back *= 2.0;
+  }
+  return t_lo;
+}
+
 /// `retreat` moves `t_lo` earlier until the balls do not overlap there as poses have it.
 template <typename Retreat>
 TimeOfImpact impact_of(const Ball& a, const Ball& b, const Window& window, const Retreat& retreat) {
   const DistanceGap gap(a, b, window);
-  TimeOfImpact toi = descent_answer(first_descent(gap, touch_of(a, b, gap.reach)), window.duration);
+  TimeOfImpact toi = descent_answer(descent_of(gap, a, b), window.duration);
   if (toi.status == ToiStatus::separated) {
     return toi;
   }
@@ -239,31 +264,35 @@ bool is_ordinary(const BallFlight& ball, const Window& window) {
 
 std::optional<TimeOfImpact> sphere_sphere_impact(const BallFlight& of_a, const BallFlight& of_b,
                                                  const Window& window) {
-  if (!(window.duration >= 0.0) || !is_ordinary(of_a, window) || !is_ordinary(of_b, window)) {
+  if (!are_ordinary(of_a, of_b, window)) {
     return std::nullopt;
   }
   const Ball a(of_a);
   const Ball b(of_b);
-  if (!(a.c == b.c)) {
+  return impact_of(a, b, window, [&](TimeOfImpact& toi) {
+    if (toi.status != ToiStatus::overlapping) {
+      toi.t_lo = retreated(a, b, window, toi.t_lo);
+    }
+  });
+}
+
+std::optional<BallMeeting> sphere_sphere_meeting(const BallFlight& of_a, const BallFlight& of_b,
+                                                 const Window& window) {
+  if (!are_ordinary(of_a, of_b, window)) {
     return std::nullopt;
   }
-  // `retreat_from_overlap`, without poses.
-  const auto retreat = [&](TimeOfImpact& toi) {
-    if (toi.status == ToiStatus::overlapping) {
-      return;
-    }
-    const double reach = a.radius + b.radius;
-    double back = ulp(toi.t_lo);
-    for (int attempt = 0; attempt < most_retreats && toi.t_lo > 0.0; ++attempt) {
-      const Instant t = window.start + toi.t_lo;
-      if (!((b.at(t - b.start) - a.at(t - a.start)).squaredNorm() <= reach * reach)) {
-        return;
-      }
-      toi.t_lo = std::max(0.0, toi.t_lo - back);
-      back *= 2.0;
-    }
-  };
-  return impact_of(a, b, window, retreat);
+  const Ball a(of_a);
+  const Ball b(of_b);
+  // As `descent_answer` has it.
+  const FirstDescent descent = descent_of(DistanceGap(a, b, window), a, b);
+  if (descent.kind == Descent::none || descent.t_lo > window.duration) {
+    return BallMeeting{.evaluations = 1};
+  }
+  if (descent.kind != Descent::found || !(descent.t_lo >= 0.0) ||
+      !(descent.t_hi <= window.duration)) {
+    return std::nullopt;
+  }
+  return BallMeeting{true, retreated(a, b, window, descent.t_lo), descent.t_hi, 1};
 }
 
 std::optional<TimeOfImpact> sphere_sphere_impact(const MovingShape& a, const MovingShape& b,

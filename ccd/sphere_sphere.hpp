@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/contact_detector.hpp"
+#include "core/ball_detector.hpp"
 
 #include <optional>
 
@@ -17,6 +17,11 @@ namespace kairos::ccd {
 /// The same of two balls that never end, bit for bit; also empty where a query might have to be
 /// refused.
 [[nodiscard]] std::optional<TimeOfImpact> sphere_sphere_impact(const BallFlight& a,
+                                                               const BallFlight& b,
+                                                               const Window& window);
+/// The same where they pass each other or meet, for who asks only when; empty also where they
+/// might do neither.
+[[nodiscard]] std::optional<BallMeeting> sphere_sphere_meeting(const BallFlight& a,
                                                                const BallFlight& b,
                                                                const Window& window);
 /// When the two part.

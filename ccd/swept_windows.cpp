@@ -42,9 +42,14 @@ Instant SweptWindows::enter(BodyIndex i, const MovingShape& moving, Instant t, I
   }
   const double s = t - moving.motion.start;
   Aabb swept = swept_aabb(moving.shape, moving.motion, s, s + (std::max(end, t) - t));
-  // A detector may report contact anywhere within its tolerance, and no such pair may be left out.
-  const double near = tolerance_ > 0.0 ? tolerance_ : 1e-9 * bounding_radius(moving.shape);
-  if (std::isfinite(near)) {
+  // A detector may report contact anywhere within its tolerance, bodies are held in touch within
+  // twice that, and no such pair may be left out: by each of the two, for the other may be a plane.
+  const double radius = bounding_radius(moving.shape);
+  if (std::isfinite(radius)) {
+    const double size =
+        std::max(swept.lower.lpNorm<Eigen::Infinity>(), swept.upper.lpNorm<Eigen::Infinity>());
+    const double near = (tolerance_ > 0.0 ? 2.0 * tolerance_ : 4e-9 * radius) +
+                        moving.motion.error_radius + 2048.0 * unit_roundoff * (size + radius);
     swept.lower.array() -= near;
     swept.upper.array() += near;
   }
@@ -60,6 +65,7 @@ double SweptWindows::window_length(BodyIndex i, const MovingShape& moving, Insta
   double& reach = watch(i).reach;
   if (reach == 0.0) {
     reach = 4.0 * bounding_radius(moving.shape);
+    watch(i).least_reach = reach / 64.0;
   }
   reach = std::min(reach, longest_reach_);
   const double s = t - moving.motion.start;
@@ -78,7 +84,8 @@ void SweptWindows::near(BodyIndex i, std::vector<Neighbour>& out) {
   constexpr std::size_t many = 16;
   const std::size_t found = out.size() - before;
   if (found > many) {
-    watched.reach *= 0.5;
+    // Of what touches it, it has all as neighbours however short its way is.
+    watched.reach = std::max(0.5 * watched.reach, watched.least_reach);
   } else if (found < few) {
     watched.reach *= 1.5;
   }
@@ -106,7 +113,7 @@ void SweptWindows::leave(BodyIndex i) {
 }
 
 void SweptWindows::Watched::persist(Archive& archive) {
-  archive(reach, swept.lower, swept.upper, known);
+  archive(reach, least_reach, swept.lower, swept.upper, known);
 }
 
 void SweptWindows::persist(Archive& archive) {

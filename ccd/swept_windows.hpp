@@ -37,6 +37,7 @@ class SweptWindows final : public Neighbourhood {
  private:
   struct Watched {
     double reach = 0.0;  ///< how far it goes before its neighbours are looked up again, m
+    double least_reach = 0.0;
     Aabb swept{};
     bool known = false;
 

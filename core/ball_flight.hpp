@@ -58,11 +58,14 @@ class FlightsBeside {
 
   /// One more that is as large as the one, and accelerated as it is.
   void add_alike(const BallFlight& other) {
-    add_alike(1, [&other](std::size_t /*k*/) -> const BallFlight& { return other; });
+    add_alike(
+        1, [&other](std::size_t /*k*/) -> const BallFlight& { return other; },
+        [](std::size_t /*k*/) { return true; });
   }
-  /// So many more of that kind at once: `thrown(k)` has position, velocity and start of one.
-  template <typename Thrown>
-  void add_alike(std::size_t count, const Thrown& thrown) {
+  /// Of so many of that kind those that `takes(k)`: `thrown(k)` has position, velocity and start of
+  /// one. It is asked for all of them, of which some may be of another kind.
+  template <typename Thrown, typename Takes>
+  void add_alike(std::size_t count, const Thrown& thrown, const Takes& takes) {
     const Instant start = one_->start;
     for (std::size_t done = 0; done < count;) {
       const std::size_t number = size_ / block;
@@ -70,17 +73,18 @@ class FlightsBeside {
         blocks_.emplace_back();
       }
       Block& to = blocks_[number];
-      const std::size_t first = size_ % block;
-      const std::size_t end = std::min(block, first + (count - done));
-      for (std::size_t k = first; k < end; ++k, ++done) {
+      std::size_t k = size_ % block;
+      for (const std::size_t end = done + std::min(block - k, count - done); done < end; ++done) {
+        // Each is written, and some are written over: which ones, no processor would guess.
         const auto& other = thrown(done);
         for (std::size_t axis = 0; axis < 3; ++axis) {
           to.position[axis][k] = other.position.data()[axis];
           to.velocity[axis][k] = other.velocity.data()[axis];
         }
         to.lag[k] = other.start - start;
+        k += takes(done) ? 1 : 0;
       }
-      size_ += end - first;
+      size_ = number * block + k;
     }
   }
 

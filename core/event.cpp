@@ -67,6 +67,8 @@ std::string_view to_string(Grade grade) {
       return "enclosed";
     case Grade::sampled:
       return "sampled";
+    case Grade::stepped:
+      return "stepped";
   }
   return "unknown";
 }

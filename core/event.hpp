@@ -31,9 +31,12 @@ enum class Grade {
   exact,     ///< a root of a polynomial, to roundoff
   enclosed,  ///< proven by intervals
   sampled,   ///< looked for at so many points, then bisected
+  stepped,   ///< at the start of an implicit step, which is of first order: see `implicit_mode`
 };
 /// The word for it in `events.csv`.
 [[nodiscard]] std::string_view to_string(Grade grade);
+/// The weakest grade.
+constexpr Grade last_of(Grade) { return Grade::stepped; }
 
 /// What a reader has to know of an impact before he relies on what came of it.
 enum class EventFlag {

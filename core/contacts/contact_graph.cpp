@@ -51,7 +51,7 @@ void ContactGraph::leave(BodyIndex i, BodyIndex j) {
 
 void Patch::persist(Archive& archive) {
   archive(a, b, manifold.normal, manifold.size, manifold.face_of_a, manifold.face_of_b, begins,
-          told, slip, turns, step, short_steps);
+          told, slip, turns, grade, step, short_steps, implicit_steps, stretch, force);
   archive.require(manifold.size <= ContactManifold::most_points);
   for (ContactManifold::Point& point : manifold.points) {
     archive(point.position, point.gap);

@@ -24,8 +24,12 @@ struct Patch {
   bool told = false;                  ///< that contact has begun
   Slip slip = Slip::none;             ///< what both do along each other
   bool turns = false;                 ///< they turn while they touch
+  Grade grade = Grade::exact;         ///< how its mode was found
   double step = 0.0;                  ///< s; how long the next step may be; 0: not known
   int short_steps = 0;                ///< in a row, of bodies that turn
+  int implicit_steps = 0;             ///< that are made before forces are looked for again
+  int stretch = 0;                    ///< how many of them were made last; 0: none since
+  std::vector<Vector3> force{};       ///< by point, on b, of the last implicit step, N
 
   void persist(Archive& archive);
 };

@@ -2,6 +2,8 @@
 
 #include "core/contacts/least_norm.hpp"
 
+#include <Eigen/Geometry>
+
 #include <cmath>
 #include <limits>
 
@@ -135,14 +137,15 @@ void ContactSystem::push(const Eigen::VectorXd& impulses, std::vector<Twist>& v)
   }
 }
 
-double ContactSystem::project(std::vector<Twist>& v) const {
+double ContactSystem::project(std::vector<Twist>& v, const Eigen::VectorXd* wanted) const {
   double driven = 0.0;
   if (rows.empty()) {
     return driven;
   }
   const LeastNorm decomposition(coupling());
   for (int k = 0; k < 2; ++k) {
-    const Eigen::VectorXd impulses = -decomposition.solve(rates(v));
+    const Eigen::VectorXd off = wanted == nullptr ? rates(v) : Eigen::VectorXd(rates(v) - *wanted);
+    const Eigen::VectorXd impulses = -decomposition.solve(off);
     push(impulses, v);
     driven += driven_work(impulses);
   }
@@ -169,6 +172,34 @@ void ContactSystem::undo_where_faster(const std::vector<Twist>& before,
       }
     }
   }
+}
+
+std::pair<Vector3, Vector3> contact_tangents(const ContactSystem& bodies, std::size_t a,
+                                             std::size_t b, const Vector3& point, const Vector3& n,
+                                             const Vector3& along) {
+  Vector3 t1 = along - n * n.dot(along);
+  t1 = t1.norm() > 0.0 ? Vector3(t1.normalized()) : n.unitOrthogonal();
+  t1 = (t1 - n * n.dot(t1)).normalized();
+  const Vector3 t2 = n.cross(t1);
+  if (bodies.joints == nullptr) {
+    return {t1, t2};
+  }
+  const auto felt = [&](const Vector3& d1, const Vector3& d2) {
+    ContactSystem rows{bodies.bodies, {}, bodies.joints};
+    rows.add(a, b, point, d1);
+    rows.add(a, b, point, d2);
+    return Eigen::Matrix2d(rows.coupling());
+  };
+  const Eigen::Matrix2d W = felt(t1, t2);
+  if (W(0, 0) == 0.0 || W(1, 1) == 0.0) {
+    return {t1, t2};  // what is blocked is one of them, or both are
+  }
+  // Of a singular W: what it makes nothing of.
+  const Eigen::Vector2d none =
+      W(0, 0) >= W(1, 1) ? Eigen::Vector2d(-W(0, 1), W(0, 0)) : Eigen::Vector2d(W(1, 1), -W(0, 1));
+  const Vector3 blocked = (none[0] * t1 + none[1] * t2).normalized();
+  const Vector3 free = blocked.cross(n);
+  return felt(free, blocked)(1, 1) == 0.0 ? std::pair{free, blocked} : std::pair{t1, t2};
 }
 
 }  // namespace core

@@ -52,9 +52,9 @@ struct ContactSystem {
   void push(const Eigen::VectorXd& impulses, std::vector<Twist>& v) const;
   /// What driven sides of joints do while these pass on such impulses, J.
   [[nodiscard]] double driven_work(const Eigen::VectorXd& impulses) const;
-  /// Projects v onto J v = 0, in the metric of the kinetic energy; twice, so that only the roundoff
-  /// of a residual is left. Returns `driven_work` of that.
-  double project(std::vector<Twist>& v) const;
+  /// Projects v onto J v = 0, or `wanted`, in the metric of the kinetic energy; twice, so that only
+  /// the roundoff of a residual is left. Returns `driven_work` of that.
+  double project(std::vector<Twist>& v, const Eigen::VectorXd* wanted = nullptr) const;
   /// Undoes a change of linear velocities (from `before` to `v`) for bodies that it moves along a
   /// row faster than before, unless the difference is a small part of their speed.
   void undo_where_faster(const std::vector<Twist>& before, std::vector<Twist>& v) const;
@@ -66,6 +66,14 @@ struct ContactSystem {
   [[nodiscard]] std::pair<Eigen::VectorXd, Eigen::VectorXd> passed(const ContactRow& row) const;
   [[nodiscard]] Eigen::MatrixXd coupling_through_joints() const;
 };
+
+/// Two unit vectors along the surface of a contact with this normal, the first where `along`
+/// points, or, where joints let nothing move along some direction of the surface, across that; n,
+/// they: a right-handed frame.
+[[nodiscard]] std::pair<Vector3, Vector3> contact_tangents(const ContactSystem& bodies,
+                                                           std::size_t a, std::size_t b,
+                                                           const Vector3& point, const Vector3& n,
+                                                           const Vector3& along);
 
 }  // namespace core
 }  // namespace kairos

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace kairos {
@@ -13,6 +14,13 @@ inline namespace core {
 namespace {
 
 using Vector2 = Eigen::Vector2d;
+
+/// What sticks parts by less than this part of what a normal impulse does: by roundoff of joints.
+constexpr double locked = 1e-12;
+/// What joints block to 1e-12 of what it would be moves by the root of that.
+constexpr double hardly_moves = 1e-6;
+/// Of a normal impulse that is the smallest that locks.
+constexpr double roundoff = 1e-13;
 
 /// Sliding along d = (cos angle, sin angle): p_t = -mu p_n d, u_n = 0.
 class Sliding {
@@ -73,6 +81,44 @@ class Sliding {
   double mu_;
 };
 
+/// What of a tangential impulse holds against x, p_n aside; where nothing moves it takes none.
+Vector2 against(const Matrix3& W, const Vector2& x) {
+  if (W(1, 1) > 0.0 && W(2, 2) > 0.0) {
+    return -(W.block<2, 2>(1, 1).inverse() * x);
+  }
+  return {W(1, 1) > 0.0 ? -x[0] / W(1, 1) : 0.0, W(2, 2) > 0.0 ? -x[1] / W(2, 2) : 0.0};
+}
+
+/// Stops what moves; NaN where nothing does.
+Vector3 sticking(const Matrix3& W, const Vector3& q, double mu) {
+  const Vector2 hold = against(W, W.block<2, 1>(1, 0));
+  const double parts = W(0, 0) + hold.dot(W.block<2, 1>(1, 0));
+  if (W(1, 1) > 0.0 && W(2, 2) > 0.0 && parts > locked * W(0, 0)) {
+    return -(W.inverse() * q);
+  }
+  const Vector2 first = against(W, q.tail<2>());
+  const double left = q[0] + first.dot(W.block<2, 1>(1, 0));
+  double normal = -left / parts;
+  if (parts <= locked * W(0, 0)) {
+    // Friction locks it, however hard it presses: hardly more than |first + s hold| <= mu s takes.
+    const double b = hold.dot(first);
+    const double root = b * b + (mu * mu - hold.squaredNorm()) * first.squaredNorm();
+    const double least = first.squaredNorm() / (std::sqrt(std::max(root, 0.0)) - b);
+    if (std::abs(left) > locked * q.norm() || !(root >= 0.0) || !(least >= 0.0)) {
+      return Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
+    }
+    normal = std::isinf(mu) ? first.norm() : (1.0 + roundoff) * least;
+  }
+  const Vector2 along = first + normal * hold;
+  return {normal, along[0], along[1]};
+}
+
+/// Whether sticking stops all that slides: joints may let nothing move along a tangent.
+bool stops(const Matrix3& W, const Vector3& q) {
+  return (W(1, 1) > 0.0 || std::abs(q[1]) <= hardly_moves * q.norm()) &&
+         (W(2, 2) > 0.0 || std::abs(q[2]) <= hardly_moves * q.norm());
+}
+
 }  // namespace
 
 Vector3 coulomb_impulse(const Matrix3& W, const Vector3& q, double mu) {
@@ -83,16 +129,19 @@ Vector3 coulomb_impulse(const Matrix3& W, const Vector3& q, double mu) {
   if (mu == 0.0) {
     return smooth;
   }
-  const Vector3 stick = -(W.inverse() * q);
-  if (stick[0] >= 0.0 && stick.tail<2>().norm() <= mu * stick[0]) {
+  const Vector3 stick = sticking(W, q, mu);
+  if (stick[0] >= 0.0 && stick.tail<2>().norm() <= mu * stick[0] && stops(W, q)) {
     return stick;
   }
   if (std::isinf(mu)) {
-    return Vector3::Zero();  // sticking would pull: without a bound of friction the contact opens
+    // Sticking would pull. Friction without a bound holds what is hardly pressed any more, and the
+    // surfaces part.
+    const Vector2 holds = -(W.block<2, 2>(1, 1).inverse() * q.tail<2>());
+    return {0.0, holds[0], holds[1]};
   }
   const Sliding sliding(W, q, mu);
   // The direction of sliding is mostly near that which sticking would have to hold: try it first.
-  const double guess = arc_tangent(-stick[2], -stick[1]);
+  const double guess = std::isnan(stick[0]) ? 0.0 : arc_tangent(-stick[2], -stick[1]);
   double reach = 0.0;
   for (double step = 1e-3; reach < M_PI; step *= 2.0) {
     const double next = std::min(reach + step, M_PI);

@@ -2,6 +2,7 @@
 
 #include "core/contact_manifold.hpp"
 #include "core/contacts/contact_system.hpp"
+#include "core/event.hpp"
 
 #include <string>
 #include <vector>
@@ -56,6 +57,7 @@ struct FlatMode {
   std::vector<double> slip_ends;  ///< by patch, where there is friction: when it stops sliding, s
   bool curved = false;            ///< refused for what slides on no line, and for nothing else
   bool turns = false;             ///< bodies turn while they touch: see `TurningMode`
+  Grade grade = Grade::exact;     ///< how it was found
   double driven = 0.0;            ///< work of what joints hang on in what is taken out, J
   int solves = 0;
 };

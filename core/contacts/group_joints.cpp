@@ -30,8 +30,10 @@ void put_back(const GroupMechanism& mechanism, std::span<const BodyState> own,
 GroupJoints::GroupJoints(std::span<const GroupMechanism> mechanisms, Instant t,
                          std::span<const BodyState> states) {
   for (const GroupMechanism& mechanism : mechanisms) {
-    mechanisms_.push_back(
-        {mechanism.places, mechanism.joints->passing(t, states_of(mechanism, states))});
+    if (mechanism.joints != nullptr) {
+      mechanisms_.push_back(
+          {mechanism.places, mechanism.joints->passing(t, states_of(mechanism, states))});
+    }
   }
 }
 
@@ -83,13 +85,19 @@ bool GroupJoints::driven() const {
 
 std::shared_ptr<const GroupJoints> group_joints(std::span<const GroupMechanism> mechanisms,
                                                 Instant t, std::span<const BodyState> states) {
-  return mechanisms.empty() ? nullptr : std::make_shared<const GroupJoints>(mechanisms, t, states);
+  const bool some =
+      std::any_of(mechanisms.begin(), mechanisms.end(),
+                  [](const GroupMechanism& mechanism) { return mechanism.joints != nullptr; });
+  return some ? std::make_shared<const GroupJoints>(mechanisms, t, states) : nullptr;
 }
 
 bool put_positions_onto_joints(std::span<const GroupMechanism> mechanisms, Instant t,
                                std::span<BodyState> states) {
   bool converged = true;
   for (const GroupMechanism& mechanism : mechanisms) {
+    if (mechanism.joints == nullptr) {
+      continue;
+    }
     std::vector<BodyState> own = states_of(mechanism, states);
     const std::vector<Vector3> no_forces(own.size(), Vector3::Zero());
     converged = mechanism.joints->project_positions(t, own, no_forces).converged && converged;
@@ -102,6 +110,9 @@ double put_velocities_onto_joints(std::span<const GroupMechanism> mechanisms, In
                                   std::span<BodyState> states) {
   double driven = 0.0;
   for (const GroupMechanism& mechanism : mechanisms) {
+    if (mechanism.joints == nullptr) {
+      continue;
+    }
     std::vector<BodyState> own = states_of(mechanism, states);
     driven += mechanism.joints->project_velocities(t, own).driven;
     put_back(mechanism, own, states);
@@ -112,6 +123,9 @@ double put_velocities_onto_joints(std::span<const GroupMechanism> mechanisms, In
 void add_mechanism_forces(const GroupMechanism& mechanism, std::span<const std::size_t> place,
                           bool joints_too, Instant t, std::span<const BodyState> states,
                           std::span<Wrench> wrenches) {
+  if (joints_too && mechanism.joints == nullptr) {
+    return;
+  }
   std::vector<BodyState> own;
   std::vector<Wrench> acting;
   for (const std::size_t i : mechanism.places) {

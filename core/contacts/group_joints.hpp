@@ -13,10 +13,10 @@
 namespace kairos {
 inline namespace core {
 
-/// Bodies of a contact group that joints hold together: all of an island.
+/// Bodies of a contact group that joints hold together, or forces between them: all of an island.
 struct GroupMechanism {
   std::vector<std::size_t> places;        ///< in the group, as the island orders them
-  const JointSystem* joints = nullptr;    ///< not owned
+  const JointSystem* joints = nullptr;    ///< not owned; null: there are none
   std::vector<const Force*> forces = {};  ///< of the island, but for those of its joints; not owned
 };
 
@@ -25,7 +25,7 @@ struct GroupMechanism {
 /// which move each other.
 class GroupJoints {
  public:
-  /// `states`: by place in the group.
+  /// `states`: by place in the group. Mechanisms without joints have no part in it.
   GroupJoints(std::span<const GroupMechanism> mechanisms, Instant t,
               std::span<const BodyState> states);
 

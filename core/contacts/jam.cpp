@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <tuple>
 
 namespace kairos {
 inline namespace core {
@@ -28,12 +29,18 @@ class Jams {
                           before_[i].linear.norm() + before_[i].angular.norm() * state.radius[i]);
     }
     for (const Touch& touch : state.touches) {
+      fastest_ = std::max(fastest_, touch.belt.norm());
       now_.push_back(look_at(touch, state.states[touch.a], state.states[touch.b]));
       const Vector3& n = now_.back().normal;
-      const Vector3 t = n.unitOrthogonal();
+      Vector3 t1 = n.unitOrthogonal();
+      Vector3 t2 = n.cross(t1);
+      if (state.joints != nullptr) {
+        const ContactSystem bodies{state.bodies, {}, state.joints};
+        std::tie(t1, t2) = contact_tangents(bodies, touch.a, touch.b, now_.back().point_b, n, t1);
+      }
       std::array<ContactRow, 3> rows;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Vector3 d = axis == 0 ? n : axis == 1 ? t : Vector3(n.cross(t));
+        const Vector3 d = axis == 0 ? n : axis == 1 ? t1 : t2;
         rows[axis] = {touch.a, touch.b, d, now_.back().point_a - state.bodies[touch.a].position,
                       now_.back().point_b - state.bodies[touch.b].position};
       }
@@ -109,6 +116,10 @@ class Jams {
           continue;  // joints block it
         }
         Vector3 q = Vector3(local_[k].rates(found.velocities)) - W * impulse[k];
+        for (int axis = 1; axis < 3; ++axis) {
+          q[axis] +=
+              local_[k].rows[static_cast<std::size_t>(axis)].direction.dot(state_.touches[k].belt);
+        }
         q.x() -= more;
         const Vector3 now = coulomb_impulse(W, q, friction(k));
         local_[k].push(now - impulse[k], found.velocities);

@@ -21,6 +21,12 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double straight = 1e-13;
 /// Part of the first sliding speed below which the rest is a straight line.
 constexpr double nearly_stopped = 1e-12;
+/// What sticks parts by less than this part of what a normal impulse does: by roundoff of joints.
+constexpr double locked = 1e-12;
+/// What joints block to 1e-12 of what it would be moves by the root of that.
+constexpr double hardly_moves = 1e-6;
+/// Part of what an impulse does along the surface by which its direction turns in equilibrium.
+constexpr double settled = 1e-14;
 constexpr int most_phases = 16;
 constexpr int most_steps = 100000;
 
@@ -36,11 +42,13 @@ struct Course {
 
 class Routh {
  public:
-  Routh(const Matrix3& W, double mu, double e) : W_(W), mu_(mu), e_(e) {}
+  Routh(const Matrix3& W, double mu, double e)
+      : W_(W), mu_(mu), e_(e), blocked_{W(1, 1) == 0.0, W(2, 2) == 0.0} {}
 
   RouthImpact run(const Vector3& u) {
     course_.u = u;
     slip_ = u.tail<2>().norm();
+    first_ = std::abs(u[0]);
     if (std::isinf(mu_)) {
       stop_at_once();
     }
@@ -60,10 +68,18 @@ class Routh {
   /// Rates of u and p with the normal impulse, while the tangential one is f times it.
   [[nodiscard]] Vector3 push(const Vector2& f) const { return Vector3(1.0, f[0], f[1]); }
 
+  /// What holds along the surface against x; nothing where nothing moves.
+  [[nodiscard]] Vector2 against(const Vector2& x) const {
+    if (!blocked_[0] && !blocked_[1]) {
+      return -(W_.block<2, 2>(1, 1).inverse() * x);
+    }
+    return {blocked_[0] ? 0.0 : -x[0] / W_(1, 1), blocked_[1] ? 0.0 : -x[1] / W_(2, 2)};
+  }
+
   /// Ends the sliding: what is left of it is roundoff, or all of it goes at once.
   void hold_still() {
     const Vector2 left = course_.u.tail<2>();
-    const Vector2 f = -(W_.block<2, 2>(1, 1).inverse() * left);
+    const Vector2 f = against(left);
     const Vector3 p(0.0, f[0], f[1]);
     course_.p += p;
     course_.u += W_ * p;
@@ -73,20 +89,39 @@ class Routh {
 
   /// Friction without a bound stops the sliding before anything is pressed.
   void stop_at_once() {
+    for (int k = 0; k < 2; ++k) {
+      if (blocked_[static_cast<std::size_t>(k)] &&
+          std::abs(course_.u[k + 1]) > hardly_moves * course_.u.norm()) {
+        return fail();  // nothing can stop it
+      }
+    }
     hold_still();
     over_ = course_.u[0] >= 0.0;
   }
 
   /// At rest along the surface: either friction holds, or sliding begins.
   void stopped() {
-    const Vector2 hold = -(W_.block<2, 2>(1, 1).inverse() * W_.block<2, 1>(1, 0));
+    const Vector2 hold = against(W_.block<2, 1>(1, 0));
     if (hold.norm() <= mu_) {
+      const double parts = W_(0, 0) + hold.dot(W_.block<2, 1>(1, 0));
+      if (parts <= locked * W_(0, 0)) {
+        return lock();
+      }
       return along(push(hold), infinity, true);
     }
     if (const std::optional<Vector2> d = leaving()) {
       return along(push(-mu_ * *d), infinity, false);
     }
     fail();
+  }
+
+  /// Joints let nothing part that sticks: whatever presses, friction holds it, and it gives nothing
+  /// back.
+  void lock() {
+    if (course_.u[0] < -nearly_stopped * std::max(slip_, first_)) {
+      return fail();  // nor does anything stop it
+    }
+    over_ = true;
   }
 
   /// Direction in which sliding begins from rest: along the part of W_tn that friction leaves.
@@ -129,7 +164,13 @@ class Routh {
   [[nodiscard]] bool keeps_direction() const {
     const Vector2 d = course_.u.tail<2>().normalized();
     const Vector2 rate = (W_ * push(-mu_ * d)).tail<2>();
-    return std::abs(d[0] * rate[1] - d[1] * rate[0]) <= straight * rate.norm();
+    const double turns = std::abs(d[0] * rate[1] - d[1] * rate[0]);
+    if (blocked_[0] || blocked_[1]) {
+      // Along what nothing moves it slides on: the direction comes to an equilibrium.
+      const double scale = W_.block<2, 1>(1, 0).norm() + mu_ * W_.block<2, 2>(1, 1).norm();
+      return turns <= std::max(straight * rate.norm(), settled * scale);
+    }
+    return turns <= straight * rate.norm();
   }
 
   void slide(const Vector2& d) {
@@ -263,8 +304,10 @@ class Routh {
   const Matrix3& W_;
   double mu_;
   double e_;
+  std::array<bool, 2> blocked_;  ///< by tangent: no impulse moves anything along it
   Course course_{};
-  double slip_ = 0.0;  ///< at first, m/s
+  double slip_ = 0.0;   ///< at first, m/s
+  double first_ = 0.0;  ///< how fast it approached, m/s
   bool over_ = false;
   bool failed_ = false;
   bool jammed_ = false;

@@ -23,7 +23,8 @@ struct RouthImpact {
 /// [Stronge1990], so that the normal work is (1 - e^2) of that <= 0 and friction takes energy.
 /// Without friction this is Newton's restitution.
 ///
-/// `W`: what an impulse does to the relative velocity, symmetric, positive definite, 1/kg;
+/// `W`: what an impulse does to the relative velocity, symmetric, positive definite, 1/kg; but rows
+/// and columns of tangents may be 0, along which joints let nothing move;
 /// `u`: relative velocity before, u_0 < 0, m/s. Components: normal, then two tangents. `mu` >= 0,
 /// may be infinite. Exact (piecewise linear) where sliding keeps its direction, as in a plane and
 /// of spheres; otherwise integrated, at order 5 in steps that make 1e-12 of it.

@@ -89,13 +89,13 @@ class Watcher {
     for (const TouchFeature& plane : watch.pair.planes_a) {
       add_plane(plane, true);
     }
-    // Where edges cross on a face, the face is what separates: corners lie in the plane of both.
-    const bool faces = !watch.pair.planes_a.empty() || !watch.pair.planes_b.empty();
     for (const Touch& touch : watch.held) {
-      const bool lines = touch.on_a.kind == Kind::line && touch.on_b.kind == Kind::line;
-      if (touch.on_a.kind != Kind::plane && touch.on_b.kind != Kind::plane && !(faces && lines)) {
-        add_touch(touch);
+      if (touch.on_a.kind != Kind::plane && touch.on_b.kind != Kind::plane) {
+        add_touch(touch, true);
       }
+    }
+    for (const Touch& touch : watch.open) {
+      add_touch(touch, false);
     }
   }
 
@@ -167,20 +167,20 @@ class Watcher {
            (carrier.spin + turning * turning) * (distance + arm);
   }
 
-  void add_touch(const Touch& touch) {
+  void add_touch(const Touch& touch, bool is_held) {
     Candidate c;
     c.touch = &touch;
     double arm_a = reach(touch.on_a);
     double arm_b = reach(touch.on_b);
     for (const TouchFeature& corner : watch_.pair.corners_a) {
       arm_a = std::max(arm_a, reach(corner));
-      if (!belongs(corner, touch.on_a)) {
+      if (!is_held || !belongs(corner, touch.on_a)) {
         c.corners_a.push_back(corner);
       }
     }
     for (const TouchFeature& corner : watch_.pair.corners_b) {
       arm_b = std::max(arm_b, reach(corner));
-      if (!belongs(corner, touch.on_b)) {
+      if (!is_held || !belongs(corner, touch.on_b)) {
         c.corners_b.push_back(corner);
       }
     }
@@ -207,24 +207,26 @@ class Watcher {
   }
 
   [[nodiscard]] double height(const Candidate& c, const BodyState& a, const BodyState& b) const {
-    double least = infinity;
-    const auto over = [&](const std::vector<TouchFeature>& corners, const Pose& pose,
-                          const Vector3& n, const Vector3& q, double plus) {
+    const auto lowest = [](const std::vector<TouchFeature>& corners, const Pose& pose,
+                           const Vector3& n, const Vector3& q) {
+      double least = infinity;
       for (const TouchFeature& corner : corners) {
-        least = std::min(least, n.dot(pose.to_world(corner.at) - q) - corner.radius + plus);
+        least = std::min(least, n.dot(pose.to_world(corner.at) - q) - corner.radius);
       }
+      return least;
     };
     if (c.plane != nullptr) {
       const Pose& carrier = c.of_a ? a.pose : b.pose;
       const Vector3 n = carrier.orientation * c.plane->direction;
-      over(c.of_a ? c.corners_b : c.corners_a, c.of_a ? b.pose : a.pose, n,
-           carrier.to_world(c.plane->at), 0.0);
-      return least;
+      return lowest(c.of_a ? c.corners_b : c.corners_a, c.of_a ? b.pose : a.pose, n,
+                    carrier.to_world(c.plane->at));
     }
+    // Along the normal of a touch no corner of a is above any of b: what touches has the gap, which
+    // is held.
     const TouchNow now = look_at(*c.touch, a, b);
-    over(c.corners_a, a.pose, -now.normal, now.point_a, now.gap);
-    over(c.corners_b, b.pose, now.normal, now.point_b, now.gap);
-    return least;
+    const double of_a = lowest(c.corners_a, a.pose, -now.normal, now.point_a);
+    const double of_b = lowest(c.corners_b, b.pose, now.normal, now.point_b);
+    return now.gap + std::min({of_a, of_b, of_a + of_b});
   }
 
   [[nodiscard]] std::vector<double> heights(double s) const {

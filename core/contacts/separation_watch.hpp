@@ -19,6 +19,8 @@ struct SeparationWatch {
   Motion motion_a;
   Motion motion_b;
   std::vector<Touch> held;  ///< touches whose gaps are held; their corners are not asked about
+  /// Touches of which nothing holds the gaps: no corner of theirs comes nearer than it may, either.
+  std::vector<Touch> open;
   /// What comes nearer than this part of `TurningPair::nearest`, or of what it is away at the start
   /// if that is less, strikes.
   double least = 0.9375;

@@ -213,9 +213,13 @@ std::optional<TouchFeature> ball_feature(const Shape& shape, const Vector3& x,
   return std::nullopt;
 }
 
-/// The edge nearest to a point of the surface, of those that `across` is perpendicular to.
+/// What is perpendicular to an edge has no more than this along it.
+constexpr double across_an_edge = 1e-6;
+
+/// The edge nearest to a point of the surface, of those that `across` is perpendicular to, or
+/// tilted from that by so much.
 std::optional<TouchFeature> line_feature(const Shape& shape, const Vector3& x,
-                                         const Vector3& across) {
+                                         const Vector3& across, double tilted = across_an_edge) {
   const auto c = polytope_corners(shape);
   if (!c || c->rounding > 0.0) {
     return std::nullopt;
@@ -226,7 +230,7 @@ std::optional<TouchFeature> line_feature(const Shape& shape, const Vector3& x,
     const Vector3 direction = (c->vertices[j] - c->vertices[i]).normalized();
     const Vector3 from = x - c->vertices[i];
     const double distance = (from - direction * direction.dot(from)).norm();
-    if (std::abs(direction.dot(across)) <= 1e-6 && distance <= nearest) {
+    if (std::abs(direction.dot(across)) <= tilted && distance <= nearest) {
       nearest = distance;
       best = TouchFeature{Kind::line, c->vertices[i], direction, 0.0};
     }
@@ -255,21 +259,45 @@ std::optional<TouchFeature> under_ball(const Shape& shape, const Vector3& on,
   return best;
 }
 
+/// Whether no corner of a shape is beyond the plane through x with this normal (body frame), by
+/// more than roundoff.
+bool is_behind(const Shape& shape, const Vector3& x, const Vector3& normal) {
+  constexpr double rounded = 1e-14;
+  const auto c = polytope_corners(shape);
+  return c && std::all_of(c->vertices.begin(), c->vertices.end(), [&](const Vector3& vertex) {
+           return normal.dot(vertex - x) <= rounded * c->size;
+         });
+}
+
 /// The edges that cross at a point of the surfaces, none of whose corners is there; nothing where
-/// they are nearly parallel: where they cross then runs away.
+/// they are nearly parallel: where they cross then runs away. The normal may be that of a face,
+/// from which edges that cross at its rim are tilted: they are what touches if they separate the
+/// two.
 std::optional<Touch> crossing(const Shape& shape_a, const Pose& a, const Vector3& on_a,
                               const Shape& shape_b, const Pose& b, const Vector3& on_b,
                               const Vector3& n) {
   constexpr double nearly_parallel = 1e-3;
-  const auto edge_a = line_feature(shape_a, on_a, a.orientation.conjugate() * n);
-  const auto edge_b = line_feature(shape_b, on_b, b.orientation.conjugate() * n);
+  constexpr double most_tilted = 0.3;
+  const Vector3 n_A = a.orientation.conjugate() * n;
+  const Vector3 n_B = b.orientation.conjugate() * n;
+  const auto edge_a = line_feature(shape_a, on_a, n_A, most_tilted);
+  const auto edge_b = line_feature(shape_b, on_b, n_B, most_tilted);
   if (!edge_a || !edge_b) {
     return std::nullopt;
   }
-  const Vector3 across =
-      (a.orientation * edge_a->direction).cross(b.orientation * edge_b->direction);
+  Vector3 across = (a.orientation * edge_a->direction).cross(b.orientation * edge_b->direction);
   if (across.norm() < nearly_parallel) {
     return std::nullopt;
+  }
+  const auto in_plane = [](const TouchFeature& edge, const Vector3& normal) {
+    return std::abs(edge.direction.dot(normal)) <= across_an_edge;
+  };
+  if (!in_plane(*edge_a, n_A) || !in_plane(*edge_b, n_B)) {
+    across *= (across.dot(n) < 0.0 ? -1.0 : 1.0) / across.norm();
+    if (!is_behind(shape_a, edge_a->at, a.orientation.conjugate() * across) ||
+        !is_behind(shape_b, edge_b->at, b.orientation.conjugate() * -across)) {
+      return std::nullopt;
+    }
   }
   Touch touch;
   touch.on_a = *edge_a;
@@ -285,7 +313,10 @@ bool is_round(const std::optional<TouchFeature>& feature) {
 
 }  // namespace
 
-TouchNow look_at(const Touch& touch, const BodyState& state_a, const BodyState& state_b) {
+namespace {
+
+/// Without belts.
+TouchNow look_at_bodies(const Touch& touch, const BodyState& state_a, const BodyState& state_b) {
   const Placed a(touch.on_a, state_a);
   const Placed b(touch.on_b, state_b);
   if (touch.on_a.kind == Kind::line && touch.on_b.kind == Kind::line) {
@@ -301,6 +332,16 @@ TouchNow look_at(const Touch& touch, const BodyState& state_a, const BodyState& 
     return ball_on_line(a, b);
   }
   return touch.on_b.kind == Kind::line ? turned_round(ball_on_line(b, a)) : ball_on_ball(a, b);
+}
+
+}  // namespace
+
+TouchNow look_at(const Touch& touch, const BodyState& state_a, const BodyState& state_b) {
+  TouchNow now = look_at_bodies(touch, state_a, state_b);
+  if (!touch.belt.isZero(0.0)) {
+    now.velocity += touch.belt - now.normal * now.normal.dot(touch.belt);
+  }
+  return now;
 }
 
 std::optional<std::vector<TouchFeature>> corners_of(const Shape& shape) {

@@ -34,8 +34,12 @@ struct Touch {
   double friction = 0.0;             ///< Coulomb's
   double gap = 0.0;                  ///< at which it is held, m
   std::size_t pair = 0;              ///< of the group
+  std::size_t point = 0;             ///< of the manifold of the pair
   double rest_speed = 0.0;           ///< m/s; what slides slower than this may be taken to stick
   bool rough = false;                ///< its friction stands for an infinite one
+  /// Velocity of the surface of b beside that of a, world frame, m/s: of belts. Along the surface,
+  /// which is a face of what the belt is on, and never moves.
+  Vector3 belt = Vector3::Zero();
 };
 
 /// A touch at two states. Rates and accelerations are of b along a.

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace kairos {
 inline namespace core {
@@ -88,7 +89,12 @@ TurningForces::TurningForces(const TurningState& state) : state_(state), load_(s
     Vector3 t1 = now_.back().velocity - n * n.dot(now_.back().velocity);
     t1 = t1.norm() > 0.0 ? Vector3(t1.normalized()) : n.unitOrthogonal();
     t1 = (t1 - n * n.dot(t1)).normalized();
-    lines_.push_back({line(k, n), line(k, t1), line(k, n.cross(t1))});
+    Vector3 t2 = n.cross(t1);
+    if (state.joints != nullptr && touch.friction > 0.0) {
+      const ContactSystem bodies{state.bodies, {}, state.joints};
+      std::tie(t1, t2) = contact_tangents(bodies, touch.a, touch.b, now_.back().point_b, n, t1);
+    }
+    lines_.push_back({line(k, n), line(k, t1), line(k, t2)});
     weight_.push_back(coupling(lines_.back()[0], lines_.back()[0]));
   }
 }
@@ -438,7 +444,9 @@ void TurningForces::sweep(std::size_t k, const FrictionChoice& as_is, std::array
     const Vector3 slides = acceleration(k, v);
     for (const std::size_t axis : {1U, 2U}) {
       const Line& t = lines_[k][axis];
-      wanted[axis - 1] = force[axis] - slides.dot(t.direction) / coupling(t, t);
+      const double felt = coupling(t, t);
+      // Where joints block it nothing moves, whatever pushes.
+      wanted[axis - 1] = felt > 0.0 ? force[axis] - slides.dot(t.direction) / felt : 0.0;
     }
     const double size = hypotenuse(wanted[0], wanted[1]);
     const double most = force[0] > 0.0 ? mu * force[0] : 0.0;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace kairos {
 inline namespace core {
@@ -330,24 +331,34 @@ HeldVelocities held_velocities(const TurningState& state, const std::vector<Touc
   ContactSystem held;
   held.bodies = state.bodies;
   held.joints = state.joints;
+  std::vector<double> wanted;
   for (std::size_t k = 0; k < choices.size(); ++k) {
     if (choices[k].does == Does::opens) {
       continue;
     }
     const Touch& touch = state.touches[k];
     const Vector3& n = now[k].normal;
-    const auto row = [&](const Vector3& d) {
+    const auto row = [&](const Vector3& d, double rate) {
       held.rows.push_back(row_of(state, touch, now[k], d));
+      wanted.push_back(rate);
     };
-    row(n);
+    row(n, 0.0);
     if (choices[k].does == Does::sticks) {
-      const Vector3 t1 = n.unitOrthogonal();
-      row(t1);
-      row(n.cross(t1));
+      Vector3 t1 = n.unitOrthogonal();
+      Vector3 t2 = n.cross(t1);
+      if (state.joints != nullptr) {
+        std::tie(t1, t2) = contact_tangents(held, touch.a, touch.b, now[k].point_b, n, t1);
+      }
+      for (const Vector3& t : {t1, t2}) {
+        row(t, -t.dot(touch.belt));
+      }
     }
   }
   HeldVelocities velocities{velocities_of(state)};
-  velocities.driven = held.project(velocities.of);
+  const Eigen::Map<const Eigen::VectorXd> rates(wanted.data(),
+                                                static_cast<Eigen::Index>(wanted.size()));
+  const Eigen::VectorXd rates_then = rates;
+  velocities.driven = held.project(velocities.of, &rates_then);
   return velocities;
 }
 

@@ -17,6 +17,8 @@ struct TurningMode {
   std::vector<Twist> velocities;  ///< by body, with nothing left of what is held
   double driven = 0.0;            ///< work of what joints hang on in that, J
   bool flies = false;             ///< nothing is held
+  bool implicit = false;          ///< forces are those of a step, see `implicit_mode`
+  bool keeps_all = false;         ///< what is not held goes on with what is, too
   int solves = 0;
 };
 

@@ -77,6 +77,23 @@ double slow_slip(const TurningGroup& group) {
   return 1e-5 * std::sqrt(TurningForces(group.start).load() * size);
 }
 
+/// Forces of an implicit step: they go with the normals, and are as large as they were.
+std::vector<Vector3> carried_forces(const TurningGroup& group, const TurningMode& mode,
+                                    const std::vector<TouchNow>& now) {
+  std::vector<Vector3> out;
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    const Touch& touch = group.start.touches[k];
+    const Vector3 before =
+        look_at(touch, group.start.states[touch.a], group.start.states[touch.b]).normal;
+    const Vector3& f = mode.forces.force[k];
+    const Vector3& n = now[k].normal;
+    const double pressing = before.dot(f);
+    const Vector3 along = f - pressing * before;
+    out.push_back(pressing * n + (along - n * n.dot(along)));
+  }
+  return out;
+}
+
 /// Contact forces as a force of the island.
 class ContactForce final : public Force {
  public:
@@ -87,11 +104,14 @@ class ContactForce final : public Force {
            std::span<Wrench> wrenches) const override {
     const TurningState state = turning_state(group_, t, bodies);
     TurningForces forces(state);
-    const auto found = forces.solve(directed(mode_, forces.now(), slow_), !forces.several());
+    const auto force =
+        mode_.implicit
+            ? carried_forces(group_, mode_, forces.now())
+            : forces.solve(directed(mode_, forces.now(), slow_), !forces.several()).force;
     std::size_t next = 0;
     for (std::size_t i = 0; i < group_.bodies.size(); ++i) {
       if (group_.inertia[i].mass > 0.0) {
-        add_to(i, state, forces, found, wrenches[next++]);
+        add_to(i, state, forces.now(), force, wrenches[next++]);
       }
     }
   }
@@ -100,15 +120,15 @@ class ContactForce final : public Force {
   [[nodiscard]] std::string description() const override { return "what holds bodies in touch"; }
 
  private:
-  static void add_to(std::size_t i, const TurningState& state, const TurningForces& forces,
-                     const TurningForces::Solution& found, Wrench& wrench) {
+  static void add_to(std::size_t i, const TurningState& state, const std::vector<TouchNow>& touches,
+                     const std::vector<Vector3>& force, Wrench& wrench) {
     for (std::size_t k = 0; k < state.touches.size(); ++k) {
       const Touch& touch = state.touches[k];
-      const TouchNow& now = forces.now()[k];
+      const TouchNow& now = touches[k];
       for (const auto& [place, point, sign] :
            {std::tuple{touch.a, now.point_a, -1.0}, {touch.b, now.point_b, 1.0}}) {
         if (place == i) {
-          const Vector3 f = sign * found.force[k];
+          const Vector3 f = sign * force[k];
           wrench.force += f;
           wrench.torque += (point - state.states[i].pose.position).cross(f);
         }
@@ -179,7 +199,9 @@ class Step {
     if (!integrate(longest)) {
       return std::move(step_);
     }
-    cut_at_strikes(raw_, strike_gap);
+    if (!mode_.implicit) {
+      cut_at_strikes(raw_, strike_gap);
+    }
     end_mode();
     finish();
     return std::move(step_);
@@ -255,7 +277,7 @@ class Step {
       step_.duration = result.advanced;
       step_.stepped = result.advanced;
       step_.halved = step_.halved || result.advanced < h;
-      if (keeps_gaps()) {
+      if (mode_.implicit || keeps_gaps()) {
         return true;
       }
       h = 0.5 * result.advanced;
@@ -283,16 +305,22 @@ class Step {
   [[nodiscard]] double strike_time(std::size_t p, const std::vector<Motion>& motions, double least,
                                    double duration) const {
     const TurningPair& pair = group_.pairs[p];
-    SeparationWatch watch{pair, motion_of(pair.a, motions), motion_of(pair.b, motions), {}, least};
+    SeparationWatch watch{pair, motion_of(pair.a, motions), motion_of(pair.b, motions), {}, {},
+                          least};
+    std::vector<Touch> open;
     for (std::size_t k = 0; k < group_.start.touches.size(); ++k) {
       const Touch& touch = group_.start.touches[k];
-      if (touch.pair == p && mode_.choices[k].does != Does::opens) {
-        watch.held.push_back(touch);
+      if (touch.pair == p) {
+        (mode_.choices[k].does != Does::opens ? watch.held : open).push_back(touch);
       }
     }
-    // What is not held, and touches no face, is met by the detector as any other.
-    const bool apart = watch.held.empty() && pair.planes_a.empty() && pair.planes_b.empty();
-    return apart ? duration : watch.strike_time(duration);
+    if (watch.held.empty() && pair.planes_a.empty() && pair.planes_b.empty()) {
+      if (!mode_.keeps_all) {
+        return duration;  // it is met by the detector as any other
+      }
+      watch.open = std::move(open);
+    }
+    return watch.strike_time(duration);
   }
 
   [[nodiscard]] Motion motion_of(std::size_t i, const std::vector<Motion>& motions) const {
@@ -310,6 +338,9 @@ class Step {
   /// What the mode is at its end for at s; `step`: it is not.
   [[nodiscard]] TurningEnd ends_at(double s) {
     const TurningState state = at(s);
+    if (mode_.implicit) {
+      return rim(state) ? TurningEnd::rim : TurningEnd::step;
+    }
     TurningForces forces(state);
     for (std::size_t k = 0; k < state.touches.size(); ++k) {
       if (stops(mode_.choices[k], forces.now()[k])) {
@@ -390,6 +421,10 @@ class Step {
       std::vector<Motion> bent = bend();
       if (!cut_at_strikes(bent, bent_gap)) {
         raw_ = std::move(bent);
+        if (mode_.implicit && !keeps_gaps()) {
+          step_.refusal = "no step is short enough to keep what touches in touch";
+          return;
+        }
         for (std::size_t k = 0; k < free_.size(); ++k) {
           step_.motions[free_[k]] = raw_[k];
         }
@@ -464,12 +499,14 @@ class Step {
     Eigen::MatrixXd of_driver = of_body;
     Eigen::MatrixXd of_pair =
         Eigen::MatrixXd::Zero(nodes, static_cast<Eigen::Index>(group_.pairs.size()));
+    Eigen::MatrixXd of_belt = of_pair;
     for (int j = 0; j < nodes; ++j) {
       const double u = 0.5 * (1.0 - cosine(M_PI * (2 * j + 1) / (2.0 * nodes)));
       for (int k = 0; k < nodes; ++k) {
         powers(j, k) = k == 0 ? 1.0 : powers(j, k - 1) * u;
       }
-      power_at(u * step_.duration, of_body.row(j), of_pair.row(j), leaks.row(j), of_driver.row(j));
+      power_at(u * step_.duration, of_body.row(j), of_pair.row(j), of_belt.row(j), leaks.row(j),
+               of_driver.row(j));
     }
     const Eigen::PartialPivLU<Square> interpolate(powers);
     const auto integrated = [&](const Eigen::VectorXd& values) {
@@ -488,6 +525,12 @@ class Step {
     }
     for (Eigen::Index p = 0; p < of_pair.cols(); ++p) {
       step_.rubbed.push_back(integrated(of_pair.col(p)));
+      if (!of_belt.col(p).isZero(0.0)) {
+        const Polynomial<3> belt = integrated(of_belt.col(p));
+        for (int k = 0; k <= belt.degree(); ++k) {
+          step_.rubbed.back()[k].y() = belt[k].x();
+        }
+      }
     }
     for (Eigen::Index i = 0; i < of_body.cols(); ++i) {
       step_.leaked.push_back(integrated(leaks.col(i)));
@@ -506,18 +549,24 @@ class Step {
     leaked = step_.worked[free_[0]];
     for (const auto& work : step_.rubbed) {
       for (int k = 0; k <= work.degree(); ++k) {
-        leaked[k].x() -= work[k].x();
+        leaked[k].x() -= work[k].x() + work[k].y();
       }
     }
   }
 
   template <typename Bodies, typename Pairs>
-  void power_at(double s, Bodies of_body, Pairs of_pair, Bodies leaks, Bodies of_driver) {
+  void power_at(double s, Bodies of_body, Pairs of_pair, Pairs of_belt, Bodies leaks,
+                Bodies of_driver) {
     const TurningState state = at(s);
     TurningForces forces(state);
     const auto choices = directed(mode_, forces.now(), slow_);
     // Of forces that are redundant those inside their cones rub.
-    const auto found = forces.verified(choices, {.carry = &carry_});
+    TurningForces::Solution found;
+    if (mode_.implicit) {
+      found.force = carried_forces(group_, mode_, forces.now());
+    } else {
+      found = forces.verified(choices, {.carry = &carry_});
+    }
     for (std::size_t k = 0; k < state.touches.size(); ++k) {
       const Touch& touch = state.touches[k];
       const TouchNow& now = forces.now()[k];
@@ -530,6 +579,12 @@ class Step {
       of_body[static_cast<Eigen::Index>(touch.a)] += on_a;
       of_body[static_cast<Eigen::Index>(touch.b)] += on_b;
       double rubbed = 0.0;
+      double carried = 0.0;
+      if (!touch.belt.isZero(0.0)) {
+        const Vector3 along = found.force[k] - now.normal * now.normal.dot(found.force[k]);
+        carried = -along.dot(touch.belt);
+        of_belt[static_cast<Eigen::Index>(touch.pair)] += carried;
+      }
       const bool slides = choices[k].does == Does::slides || choices[k].does == Does::begins;
       if (slides && !choices[k].direction.isZero(0.0)) {
         const Vector3 along = found.force[k] - now.normal * now.normal.dot(found.force[k]);
@@ -537,7 +592,7 @@ class Step {
       }
       of_pair[static_cast<Eigen::Index>(touch.pair)] += rubbed;
       const std::size_t first = group_.inertia[touch.a].mass > 0.0 ? touch.a : touch.b;
-      leaks[static_cast<Eigen::Index>(first)] += on_a + on_b - rubbed;
+      leaks[static_cast<Eigen::Index>(first)] += on_a + on_b - (rubbed + carried);
     }
     if (state.joints != nullptr && state.joints->driven()) {
       const Eigen::VectorXd power = driven_power(state, forces, found);

@@ -58,7 +58,8 @@ struct TurningStep {
   std::vector<Motion> motions;        ///< by place; of free bodies only
   std::vector<BodyState> states;      ///< by place, at the end
   std::vector<Polynomial<3>> worked;  ///< by place: x, work of contact forces on the body, J
-  std::vector<Polynomial<3>> rubbed;  ///< by pair: x, work of friction that slides, J, <= 0
+  /// By pair: x, work of friction that slides, J, <= 0; y, what belts do, J.
+  std::vector<Polynomial<3>> rubbed;
   /// By place: x, what the contact forces of the touches of which it is the first free body gave
   /// that is no friction: truncation, J.
   std::vector<Polynomial<3>> leaked;
@@ -81,7 +82,9 @@ struct TurningStep {
 /// gaps is taken out at the end of the step, positions first and then velocities, and its motions
 /// are bent to that. The step is shortened until no held gap is off by more than a small part of
 /// what it is. What ends the mode is looked for along these motions: corners that come down between
-/// bounds of their accelerations, forces and rims at 16 points and then by bisection.
+/// bounds of their accelerations, forces and rims at 16 points and then by bisection. In an
+/// implicit mode contact forces are those of the mode, what is told keeps the gaps, and the step is
+/// refused where it does not; no forces end it.
 [[nodiscard]] TurningStep turning_step(const TurningGroup& group, const TurningMode& mode,
                                        Stepper& stepper, Instant t, double longest);
 

@@ -16,6 +16,7 @@ class RouthLaw final : public ImpactLaw {
                 "friction and Stronge's restitution, as a motion in the normal impulse: "
                 "keeps momentum; normal work (1 - e^2) of that of the approach, friction "
                 "takes energy; without friction newton",
+            .passed_on_by_joints = true,
             .friction = true,
             .kinematic = false};
   }

@@ -1,9 +1,12 @@
 // Two boxes at one instant: all ways to ask agree, and what is proven is true.
 #include "ccd/box_batch.hpp"
+#include "ccd/nearest_points.hpp"
 #include "ccd/relative_boxes.hpp"
 #include "ccd/sine_cosine.hpp"
 #include "experiments/accuracy/random_query.hpp"
 #include "tests/catch.hpp"
+
+#include <limits>
 
 using namespace kairos;
 using namespace kairos::reference;
@@ -163,5 +166,52 @@ TEST_CASE("sine and cosine are right to 3 u", "[ccd]") {
         std::abs(cosine - std::cos(Real(x))) > 3 * Real(u)) {
       FAIL_CHECK(x);
     }
+  }
+}
+
+TEST_CASE("nearest points of boxes are those of all their corners and pairs of edges",
+          "[ccd][sat]") {
+  // Edges that are left out change no bit.
+  Random random(20261124);
+  for (int k = 0; k < 20000; ++k) {
+    CAPTURE(k);
+    ccd::RelativeBoxes s = random_pair(random, k % 2 == 0).relative;
+    if (k % 4 == 0) {  // one on the other, apart by as little as a hop
+      s.d_A.y() = s.half_a.y() + s.half_b.y() + random.log_uniform(1e-16, 1e-6);
+    }
+    ccd::NearestPoints best;
+    best.distance = std::numeric_limits<double>::infinity();
+    const auto keep = [&best](const Vector3& on_a, const Vector3& on_b, double distance) {
+      if (distance < best.distance) {
+        best = {on_a, on_b, distance};
+      }
+    };
+    const auto clamped = [](const Vector3& x, const Vector3& half) -> Vector3 {
+      return x.cwiseMax(-half).cwiseMin(half);
+    };
+    for (int c = 0; c < 8; ++c) {
+      const Vector3 corner_b = s.d_A + s.axes_A * ccd::box_corner(s.half_b, c);
+      const Vector3 below = clamped(corner_b, s.half_a);
+      keep(below, corner_b, (corner_b - below).norm());
+      const Vector3 corner_a = ccd::box_corner(s.half_a, c);
+      const Vector3 above =
+          s.d_A + s.axes_A * clamped(s.axes_A.transpose() * (corner_a - s.d_A), s.half_b);
+      keep(corner_a, above, (above - corner_a).norm());
+    }
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        for (int c = 0; c < 16; ++c) {
+          const ccd::NearestPoints edges = ccd::nearest_of_segments(
+              ccd::edge_centre(s.half_a, i, c & 3), Vector3::Unit(i), s.half_a[i],
+              s.d_A + s.axes_A * ccd::edge_centre(s.half_b, j, c >> 2), s.axes_A.col(j),
+              s.half_b[j]);
+          keep(edges.on_a, edges.on_b, edges.distance);
+        }
+      }
+    }
+    const ccd::NearestPoints found = ccd::nearest_of_boxes(s);
+    REQUIRE(found.distance == best.distance);
+    REQUIRE(found.on_a == best.on_a);
+    REQUIRE(found.on_b == best.on_b);
   }
 }

@@ -74,3 +74,48 @@ TEST_CASE("a rough contact sticks, a smooth one has no friction", "[friction]") 
   CHECK((coulomb_impulse(W, q, 0.5) - Vector3(1.0, -0.3, 0.4)).norm() <= 1e-12);
   CHECK(coulomb_impulse(W, {0.0, 1.0, 0.0}, 0.5) == Vector3::Zero());
 }
+
+TEST_CASE("the impulse of a contact at which joints block a direction", "[friction]") {
+  Random random(20261124);
+  INFO("seed 20261124");
+  int sticks = 0, slides = 0, locks = 0;
+  for (int trial = 0; trial < 5'000; ++trial) {
+    // A point that moves on a line or on a plane, told along axes of which one is blocked, or not.
+    Matrix3 W = Matrix3::Zero();
+    Vector3 q = Vector3::Zero();
+    const int kind = trial % 3;
+    const Vector3 d = random.direction();
+    if (kind == 0) {  // a plane across the second tangent
+      W.topLeftCorner<2, 2>() = random_compliance(random).topLeftCorner<2, 2>();
+      q.head<2>() = Eigen::Vector2d(random.uniform(-1.0, 0.2), random.uniform(-1.0, 1.0));
+    } else if (kind == 1) {  // a line across the second tangent
+      const Vector3 line = Vector3(d.x(), d.y(), 0.0).normalized();
+      W = 2.0 * line * line.transpose();
+      q = line * random.uniform(-1.0, 1.0);
+    } else {  // any plane
+      W = Matrix3::Identity() - d * d.transpose();
+      const Vector3 some = random.direction();
+      q = some - d * d.dot(some);
+    }
+    const double mu = random.log_uniform(0.05, 3.0);
+    const Vector3 p = coulomb_impulse(W, q, mu);
+    const Vector3 u = W * p + q;
+    const double tolerance = 1e-9 * (q.norm() + p.norm()) * (1.0 + mu);
+    const double slip = u.tail<2>().norm();
+    CAPTURE(trial, mu, W, q.transpose(), p.transpose(), u.transpose());
+    REQUIRE(p[0] >= 0.0);
+    REQUIRE(u[0] >= -tolerance);
+    REQUIRE(p[0] * u[0] <= tolerance * p[0]);
+    REQUIRE(p.tail<2>().norm() <= mu * p[0] * (1.0 + 1e-12));
+    if (p[0] > 0.0 && slip > tolerance) {
+      ++slides;
+      const Eigen::Vector2d rest = p.tail<2>() + mu * p[0] * u.tail<2>() / slip;
+      REQUIRE(rest.norm() * slip <= tolerance * (p.tail<2>().norm() + mu * p[0]));
+    } else if (p[0] > 0.0) {
+      ++(kind == 0 ? sticks : locks);
+    }
+  }
+  CHECK(sticks > 100);
+  CHECK(slides > 10);
+  CHECK(locks > 100);
+}

@@ -122,6 +122,58 @@ TEST_CASE("routh: sliding that turns, against many small impulses", "[routh]") {
   CHECK(coarse / fine == Approx(4.0).epsilon(0.05));  // of order 2, to the same limit
 }
 
+TEST_CASE("routh: a point that joints let move along one line", "[routh]") {
+  // Pressed together it feels the normal impulse and friction that helps, let go friction that does
+  // not. Where friction is more than the line is steep it is not let go.
+  for (const double steep : {0.3, 0.8, 2.0}) {
+    const Vector3 line = Vector3(steep, -1.0, 0.0).normalized();
+    const Matrix3 W = 2.0 * line * line.transpose();
+    for (const double mu : {0.0, 0.25, 0.5, 3.0, static_cast<double>(INFINITY)}) {
+      for (const double e : {0.0, 0.6, 1.0}) {
+        CAPTURE(steep, mu, e);
+        const Vector3 before = -1.5 * line;
+        const RouthImpact impact = routh_impact(W, before, mu, e);
+        REQUIRE(impact.solved);
+        const double share = std::isinf(mu) ? 0.0 : (steep - mu) / (steep + mu);
+        const double after = share > 0.0 ? 1.5 * e * std::sqrt(share) : 0.0;
+        CHECK((impact.velocity - after * line).norm() <= 1e-14);
+        const double gained = 0.5 * impact.impulse.dot(before + impact.velocity);
+        CHECK(std::abs(impact.normal_work + impact.friction_work - gained) <= 1e-14);
+        CHECK(impact.friction_work <= 0.0);
+      }
+    }
+  }
+}
+
+TEST_CASE("routh: what joints let not slide is rubbed all the same", "[routh]") {
+  // Along the second tangent nothing moves but by itself: the surface runs on underneath.
+  Matrix3 W = Matrix3::Zero();
+  W(0, 0) = 1.0;
+  W(1, 1) = 2.0;
+  W(0, 1) = W(1, 0) = 0.3;
+  const double mu = 0.4;
+  for (const double across : {0.2, 5.0, 1e-9}) {
+    CAPTURE(across);
+    const Vector3 before(-1.0, 0.7, across);
+    const RouthImpact impact = routh_impact(W, before, mu, 0.5);
+    REQUIRE(impact.solved);
+    CHECK(impact.velocity[2] == across);
+    CHECK(impact.velocity[0] > 0.0);
+    CHECK(impact.impulse.tail<2>().norm() <= mu * impact.impulse[0] * (1.0 + 1e-12));
+    CHECK((impact.velocity - before - W * impact.impulse).norm() <= 1e-12);
+    const double gained = 0.5 * impact.impulse.dot(before + impact.velocity);
+    CHECK(std::abs(impact.normal_work + impact.friction_work - gained) <= 1e-11);
+  }
+  // Nothing else slides: friction acts along that, and changes nothing.
+  W(1, 1) = W(0, 1) = W(1, 0) = 0.0;
+  const RouthImpact along = routh_impact(W, {-1.0, 0.0, 2.0}, mu, 0.5);
+  REQUIRE(along.solved);
+  CHECK((along.impulse - Vector3(1.5, 0.0, -1.5 * mu)).norm() <= 1e-14);
+  CHECK(along.friction_work == Approx(-1.5 * mu * 2.0));
+  // Without a bound nothing goes with it.
+  CHECK_FALSE(routh_impact(W, {-1.0, 0.0, 2.0}, INFINITY, 0.5).solved);
+}
+
 TEST_CASE("routh 13: Painleve's angles of a rod and of a thin box", "[routh][reference]") {
   // A rod of length 2 slides on its end at the angle theta: the sign of W_nn - mu W_nt.d changes.
   const auto edge = [](double half, double thick, double mu, double from, double to) {

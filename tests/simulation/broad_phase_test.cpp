@@ -1,4 +1,5 @@
 #include "ccd/cells.hpp"
+#include "core/ball_detector.hpp"
 #include "core/random.hpp"
 #include "core/reading/scene_reader.hpp"
 #include "core/scene.hpp"
@@ -283,7 +284,8 @@ TEST_CASE("whoever listens to motions hears of the same events", "[broad-phase]"
   }
 }
 
-// `clear_times` may pass over a pair only before it meets; `ball_impact` is `time_of_impact`.
+// `clear_times` may pass over a pair only before it meets; `ball_impact` is `time_of_impact`, and
+// `ball_meeting` its time.
 TEST_CASE("balls are clear of each other as long as they are said to be", "[broad-phase]") {
   constexpr std::uint64_t seed = 17;
   INFO("seed " << seed);
@@ -293,7 +295,10 @@ TEST_CASE("balls are clear of each other as long as they are said to be", "[broa
                    random.uniform(-size, size));
   };
   const auto detector = find_detector("certified");
+  const auto* const of_balls = dynamic_cast<const BallDetector*>(detector.get());
+  REQUIRE(of_balls != nullptr);
   int met = 0;
+  int asked_when = 0;
   int passed_over = 0;
   int passed_over_alike = 0;
   int wrong = 0;
@@ -345,6 +350,13 @@ TEST_CASE("balls are clear of each other as long as they are said to be", "[broa
       };
       differ += bits(*same) != bits(toi) ? 1 : 0;
     }
+    if (const auto when = of_balls->ball_meeting(a, b, {std::max(a.start, b.start), 50.0})) {
+      ++asked_when;
+      const bool meets = toi.status == ToiStatus::impact;
+      differ += when->meets != meets || (!meets && toi.status != ToiStatus::separated) ? 1 : 0;
+      differ += meets && (when->t_lo != toi.t_lo || when->t_hi != toi.t_hi) ? 1 : 0;
+      differ += when->evaluations != toi.evaluations ? 1 : 0;
+    }
     passed_over += clear > 0.0 ? 1 : 0;
     passed_over_alike += alike && clear > 0.0 ? 1 : 0;
     wrong += toi.status != ToiStatus::separated && !(clear <= toi.t_lo) ? 1 : 0;
@@ -356,4 +368,5 @@ TEST_CASE("balls are clear of each other as long as they are said to be", "[broa
   // The short way of asking says the same, and is there for all of these.
   CHECK(differ == 0);
   CHECK(asked_short == 100000);
+  CHECK(asked_when > 50000);
 }

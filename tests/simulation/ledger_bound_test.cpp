@@ -11,7 +11,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
+#include <string_view>
 #include <utility>
 
 using namespace kairos;
@@ -30,8 +32,10 @@ class Order : public FrameBalance {
       ++backwards;
     }
     last_ = event.time;
+    deepest = std::min(deepest, event.contact.gap);
   }
-  int backwards = 0;  ///< events told after one that was later
+  int backwards = 0;     ///< events told after one that was later
+  double deepest = 0.0;  ///< the least gap of an impact, m
 
  private:
   Instant last_;
@@ -96,8 +100,11 @@ TEST_CASE("ledger: what is elastic is explained for a thousand seconds", "[ledge
   for (const char* scene : {"billiard", "bounce", "cradle", "table", "spinning-box"}) {
     for (const auto& scheme : schemes()) {
       for (const char* integrator : {"auto", "symplectic-euler"}) {
-        // penalty and xpbd take 100 and 20 steps a frame.
-        const double duration = scheme->info().integrator.empty() ? 1000.0 : 20.0;
+        // penalty and xpbd take 100 and 20 steps a frame, and a box that tumbles many, whose
+        // impacts are looked for in each.
+        const bool tumbles = std::string_view(scene) == "spinning-box";
+        const bool steps = !scheme->info().integrator.empty();
+        const double duration = steps ? 20.0 : tumbles ? 200.0 : 1000.0;
         check_frames(scene, {std::string(scheme->info().name), integrator, "certified", "newton"},
                      duration);
       }
@@ -126,7 +133,13 @@ TEST_CASE("ledger: no frame of a crowd undoes an impact that was booked, and eve
     const std::string name(scheme->info().name);
     CAPTURE(name);
     Order order;
-    (void)simulate(model, {.method = {name, "auto", "certified", "newton"}}, order);
+    RunChoice choice;
+    choice.method = {name, "auto", "certified", "newton"};
+    if (name == "event-driven") {
+      choice.duration = 0.6;  // what follows are hops that die out, for most of the time it takes
+    }
+    (void)simulate(model, choice, order);
     CHECK(order.backwards == 0);
+    CHECK((name != "event-driven" || order.deepest > -1e-12));
   }
 }

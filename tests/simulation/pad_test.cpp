@@ -13,7 +13,7 @@
 using namespace kairos;
 
 TEST_CASE("pad: under every scheme every stepper of order 2 and more flies its parabolas",
-          "[pad]") {
+          "[pad][slow]") {
   const Scene scene = read_scene(find_scene("pad"), {{"duration", "1.4"}});
   for (const auto& scheme : schemes()) {
     if (!scheme->info().integrator.empty()) {

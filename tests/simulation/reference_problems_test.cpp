@@ -84,7 +84,7 @@ TEST_CASE("reference: Zeno, FMI's bouncing ball and Siconos' ball", "[reference]
 }
 
 TEST_CASE("reference: quadratic drag, every bounce, with every controlled stepper at its tightest",
-          "[reference]") {
+          "[reference][slow]") {
   const Scene scene = shipped("drag-drop", {{"duration", "1.9"}});
   std::size_t steppers = 0;
   for (const IntegratorEntry& entry : integrator_entries()) {
@@ -230,7 +230,8 @@ TEST_CASE("reference: SimBenchmark's 49 balls gain M g^2 h T/(2 sqrt 3) with exp
   CHECK(error_with("event-driven", "auto", "certified") <= 1e-9);
 }
 
-TEST_CASE("reference: Runge-Kutta 4 has slope 1, 2 or 4, as impacts are located", "[reference]") {
+TEST_CASE("reference: Runge-Kutta 4 has slope 1, 2 or 4, as impacts are located",
+          "[reference][slow]") {
   // 20 s with five or six impacts. Where an impact falls into its step is spread evenly, of the
   // first by the start phase, of the others by the remainder that the step leaves of the time
   // between impacts (see the experiment `order`): 64 draws are enough then, for each halving.

@@ -113,43 +113,54 @@ double EventAccumulation::rest_tolerance(double extent, double coordinate, bool 
 }
 
 EventAccumulation::Scale EventAccumulation::scale_of(const Rebound& of) const {
-  const double extent_a = 2.0 * of.ball_a.radius;
-  const double extent_b = 2.0 * of.ball_b.radius;
+  const auto extent_of = [](const PlainBall* ball) {
+    return ball != nullptr ? 2.0 * ball->radius : std::numeric_limits<double>::infinity();
+  };
+  const auto pressing_of = [this](const PlainBall* ball, BodyIndex i) {
+    return ball != nullptr ? motions_.flight(i).acceleration.norm() : 0.0;
+  };
+  const double extent_a = extent_of(of.ball_a);
+  const double extent_b = extent_of(of.ball_b);
   const double coordinate = std::max(of.event.after_a.pose.position.cwiseAbs().maxCoeff(),
                                      of.event.after_b.pose.position.cwiseAbs().maxCoeff());
   return {
       rest_tolerance(std::min(extent_a, extent_b), coordinate, of.event.contact.restitution < 1.0),
-      motions_.flight(of.event.a).acceleration.norm() +
-          motions_.flight(of.event.b).acceleration.norm(),
-      small_way * extent_a, small_way * extent_b};
+      pressing_of(of.ball_a, of.event.a) + pressing_of(of.ball_b, of.event.b), small_way * extent_a,
+      small_way * extent_b};
 }
 
 /// Twice the speed that `EventModes` takes for rest.
-bool EventAccumulation::part_for_sure(const Rebound& of) const {
-  const Scale scale = scale_of(of);
+bool EventAccumulation::part_for_sure(const Rebound& of, const Scale& scale) {
   const double speeds =
       of.event.after_a.twist.linear.lpNorm<1>() + of.event.after_b.twist.linear.lpNorm<1>();
   const double parting = of.parting - 32.0 * epsilon * speeds;
   return parting > 0.0 && parting * parting > 8.0 * scale.pressing * scale.tolerance;
 }
 
-bool EventAccumulation::go_on_for_sure(const Rebound& of) {
+bool EventAccumulation::go_on_for_sure(const Rebound& of, const Scale& scale) {
   const auto [a, b] = std::pair{of.event.a, of.event.b};
-  const Scale scale = scale_of(of);
   const bool rest = of.approach * of.approach <= 2.0 * scale.pressing * scale.tolerance;
   const Instant t = of.event.time;
-  histories_[a].add({b, of.approach, scale.near_a, scale.tolerance, rest}, t);
-  histories_[b].add({a, of.approach, scale.near_b, scale.tolerance, rest}, t);
-  const auto goes_on = [](const ImpactHistory& history) {
-    return !history.rests() && !history.on_no_way() && !worth_a_look(history.chain());
+  if (of.ball_a != nullptr) {
+    histories_[a].add({b, of.approach, scale.near_a, scale.tolerance, rest}, t);
+  }
+  if (of.ball_b != nullptr) {
+    histories_[b].add({a, of.approach, scale.near_b, scale.tolerance, rest}, t);
+  }
+  const auto goes_on = [this](const PlainBall* ball, BodyIndex i) {
+    const ImpactHistory& history = histories_[i];
+    return ball == nullptr ||
+           (!history.rests() && !history.on_no_way() && !worth_a_look(history.chain()));
   };
-  return goes_on(histories_[a]) && goes_on(histories_[b]);
+  return goes_on(of.ball_a, a) && goes_on(of.ball_b, b);
 }
 
-EventAccumulation::Finding EventAccumulation::after_impact(const Rebound& of) const {
+EventAccumulation::Finding EventAccumulation::after_impact(const Rebound& of,
+                                                           const Scale& scale) const {
   const auto [a, b] = std::pair{of.event.a, of.event.b};
-  return conclude(a, b, scale_of(of).tolerance, histories_[a].rests() && histories_[b].rests(),
-                  of.event.time);
+  const bool resting = (of.ball_a == nullptr || histories_[a].rests()) &&
+                       (of.ball_b == nullptr || histories_[b].rests());
+  return conclude(a, b, scale.tolerance, resting, of.event.time);
 }
 
 EventAccumulation::Finding EventAccumulation::after_impact(BodyIndex a, BodyIndex b,

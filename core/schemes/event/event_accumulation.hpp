@@ -43,31 +43,15 @@ class EventAccumulation {
   /// An impact that met at `approach`, m/s, left the two at `now`.
   [[nodiscard]] Finding after_impact(BodyIndex a, BodyIndex b, double approach, Instant t);
 
-  /// Two plain balls have struck each other. None of what follows asks for their states at `now`.
+  /// Two plain balls, or one and a wall, have struck each other. None of what follows asks for
+  /// their states at `now`.
   struct Rebound {
-    const PlainBall& ball_a;
-    const PlainBall& ball_b;
+    const PlainBall* ball_a;  ///< null: a wall
+    const PlainBall* ball_b;
     const Event& event;     ///< of the impact
     double approach = 0.0;  ///< at which they met, m/s, > 0
     double parting = 0.0;   ///< at which they part, m/s; < 0: they do not
   };
-  /// Whether they part by more than what presses them together, or rounding, could make of rest.
-  [[nodiscard]] bool part_for_sure(const Rebound& of) const;
-  /// Counts the impact as `after_impact` does; whether it is one of those that just go on. If not,
-  /// that is still to be asked.
-  [[nodiscard]] bool go_on_for_sure(const Rebound& of);
-  /// What follows of such an impact, which is counted; the two are at `now`.
-  [[nodiscard]] Finding after_impact(const Rebound& of) const;
-  /// A look at a pair at t that changed nothing: true where looks get nowhere, each within
-  /// `resolution`, s, of the one before.
-  [[nodiscard]] bool stalls(BodyIndex a, BodyIndex b, Instant t, double resolution);
-
-  /// An impact of body i is about to come.
-  void look_up(BodyIndex i) const { prefetch(histories_[i]); }
-
-  void persist(Archive& archive);
-
- private:
   /// What impacts of a pair are measured with.
   struct Scale {
     double tolerance = 0.0;  ///< see `rest_tolerance`, m
@@ -76,6 +60,25 @@ class EventAccumulation {
     double near_b = 0.0;
   };
   [[nodiscard]] Scale scale_of(const Rebound& of) const;
+  /// Whether they part by more than what presses them together, or rounding, could make of rest.
+  [[nodiscard]] static bool part_for_sure(const Rebound& of, const Scale& scale);
+  /// Counts the impact as `after_impact` does; whether it is one of those that just go on. If not,
+  /// that is still to be asked.
+  [[nodiscard]] bool go_on_for_sure(const Rebound& of, const Scale& scale);
+  /// What follows of such an impact, which is counted; the two are at `now`.
+  [[nodiscard]] Finding after_impact(const Rebound& of, const Scale& scale) const;
+  /// A look at a pair at t that changed nothing: true where looks get nowhere, each within
+  /// `resolution`, s, of the one before.
+  [[nodiscard]] bool stalls(BodyIndex a, BodyIndex b, Instant t, double resolution);
+  /// Body i, which stalled, goes on in another way.
+  void go_on(BodyIndex i) { histories_[i].go_on(); }
+
+  /// An impact of body i is about to come.
+  void look_up(BodyIndex i) const { prefetch(histories_[i]); }
+
+  void persist(Archive& archive);
+
+ private:
   [[nodiscard]] static double rest_tolerance(double extent, double coordinate, bool dies_down);
   [[nodiscard]] Finding conclude(BodyIndex a, BodyIndex b, double tolerance, bool resting,
                                  Instant t) const;

@@ -129,6 +129,12 @@ void Agenda::sweep_out() {
   crowded_ = std::max(least_crowded, 2 * heap_.size());
 }
 
+/// Whether something can be due then: not before the start, nor so late that differences of times
+/// have no number.
+static bool possible(Instant t) {
+  return !(t < Instant::never()) || (t.seconds >= 0.0 && t.seconds < 1e100);
+}
+
 void Agenda::Entry::persist(Archive& archive) {
   archive(time, kind, a, b, version_a, version_b, bracket, decided, image);
 }
@@ -140,7 +146,8 @@ void Agenda::Record::persist(Archive& archive) {
 void Agenda::persist(Archive& archive) {
   archive(version_, heap_, crowded_, records_);
   for (BodyIndex i = 0; i < records_.size(); ++i) {
-    archive.require(records_[i].partner < by_name_.size());
+    archive.require(records_[i].partner < by_name_.size() && possible(records_[i].meeting) &&
+                    possible(records_[i].crossing));
     if (archive.reading()) {
       file(i);
     }

@@ -73,8 +73,8 @@ class Agenda : private EventCalendar::Source {
   template <typename See>
   void see_soon(const See& see) const {
     const std::span<const EventCalendar::Entry> today = calendar_.today();
-    for (std::size_t k = 1; k < std::min<std::size_t>(today.size(), 3); ++k) {
-      show(today[k], see);
+    for (std::size_t k = 2; k < std::min<std::size_t>(today.size() + 1, 4); ++k) {
+      show(today[today.size() - k], see);
     }
   }
   /// The same of all that comes up on the day that has begun since this was last asked.

@@ -162,12 +162,16 @@ void EventMotions::book_surface_forces(BodyIndex i, Instant t) {
     const Vector3 way_b = way(surface.from_b, to_b, surface.arm_b);
     const Vector3 belts = h * (surface.belt_b - surface.belt_a);
     if (surface.curved) {
-      run_.ledger.add(EnergyLine::friction, surface.spent(t - surface.begun).x() -
-                                                surface.spent(surface.booked - surface.begun).x());
+      const Vector3 done =
+          surface.spent(t - surface.begun) - surface.spent(surface.booked - surface.begun);
+      run_.ledger.add(EnergyLine::friction, done.x());
+      if (done.y() != 0.0) {
+        run_.ledger.add(EnergyLine::conveyor_and_hand, done.y());
+      }
     } else if (surface.slides) {
       run_.ledger.add(EnergyLine::friction, surface.along.dot((way_b - way_a) + belts));
     }
-    if (!belts.isZero(0.0)) {
+    if (!belts.isZero(0.0) && !surface.curved) {
       run_.ledger.add(EnergyLine::conveyor_and_hand, -surface.along.dot(belts));
     }
     if (surface.rides) {

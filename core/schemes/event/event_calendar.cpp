@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 namespace kairos {
@@ -22,17 +21,12 @@ constexpr std::size_t most_entries = 6;
 
 }  // namespace
 
-bool EventCalendar::later(const Entry& x, const Entry& y) {
-  if (x.time.seconds != y.time.seconds) {
-    return x.time.seconds > y.time.seconds;
-  }
-  return std::tuple(x.time.correction, x.key, x.key2) >
-         std::tuple(y.time.correction, y.key, y.key2);
-}
-
 void EventCalendar::put(std::uint32_t body, Instant time, const Source& source) {
   const Slip slip{body, ++latest_[body], 0};
   if (time < Instant::never()) {
+    if (filed_ + far_.size() > most_entries * latest_.size() + 1024) {
+      renew(source);
+    }
     file(slip, time, source);
   }
 }
@@ -52,8 +46,8 @@ void EventCalendar::file(const Slip& slip, Instant time, const Source& source) {
   }
   const auto number = static_cast<std::int64_t>(day);
   if (number <= day_) {
-    today_.push_back(entry_of(source, slip));
-    std::push_heap(today_.begin(), today_.end(), later);
+    late_.push_back(entry_of(source, slip));
+    std::push_heap(late_.begin(), late_.end(), later);
     return;
   }
   const std::int64_t week = number >> to_week_;
@@ -99,30 +93,32 @@ void EventCalendar::tear_off(std::uint32_t& from, const See& see) {
   }
 }
 
-const EventCalendar::Entry* EventCalendar::first(const Source& source) {
-  if (today_.empty() && filed_ == 0 && far_.empty()) {
-    return nullptr;
+/// The earliest of today's, where some were put after it began.
+const EventCalendar::Entry* EventCalendar::first_of_late() {
+  while (!late_.empty() && !current(late_.front())) {
+    std::pop_heap(late_.begin(), late_.end(), later);
+    late_.pop_back();
   }
-  if (per_day_ == 0.0 || filed_ + far_.size() > most_entries * latest_.size() + 1024) {
-    renew(source);
+  if (late_.empty()) {
+    return today_.empty() ? nullptr : &today_.back();
   }
-  while (true) {
-    while (!today_.empty()) {
-      if (current(today_.front())) {
-        return today_.data();
-      }
-      std::pop_heap(today_.begin(), today_.end(), later);
-      today_.pop_back();
-    }
-    if (filed_ == 0) {
-      if (far_.empty()) {
-        return nullptr;
-      }
+  const bool is_late = today_.empty() || later(today_.back(), late_.front());
+  return is_late ? late_.data() : &today_.back();
+}
+
+/// Today is over, or has not begun.
+const EventCalendar::Entry* EventCalendar::first_after_today(const Source& source) {
+  while (filed_ != 0 || !far_.empty()) {
+    if (filed_ == 0 || per_day_ == 0.0) {
       renew(source);
-      continue;
+    } else {
+      begin_next_day(source);
     }
-    begin_next_day(source);
+    if (const Entry* const earliest = first_of_today(); earliest != nullptr) {
+      return earliest;
+    }
   }
+  return nullptr;
 }
 
 void EventCalendar::begin_next_day(const Source& source) {
@@ -138,7 +134,7 @@ void EventCalendar::begin_next_day(const Source& source) {
   });
   look_ahead(source);
   taken_ += today_.size();
-  std::make_heap(today_.begin(), today_.end(), later);
+  std::sort(today_.begin(), today_.end(), later);
   if (day_ >= check_) {
     const double mean =
         static_cast<double>(taken_) / (0.5 * static_cast<double>(days_ahead()) * entries_a_day);
@@ -194,6 +190,7 @@ void EventCalendar::renew(const Source& source) {
     }
   };
   std::for_each(today_.begin(), today_.end(), take);
+  std::for_each(late_.begin(), late_.end(), take);
   std::for_each(far_.begin(), far_.end(), take);
   for (std::vector<std::uint32_t>* const ring : {&days_, &weeks_}) {
     for (std::uint32_t& pages : *ring) {
@@ -208,6 +205,7 @@ void EventCalendar::renew(const Source& source) {
     weeks_.resize(std::size_t{1} << (to_all - to_week_), none);
   }
   today_.clear();
+  late_.clear();
   far_.clear();
   filed_ = taken_ = 0;
   day_ = week_ = 0;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace kairos {
@@ -13,13 +14,13 @@ inline namespace core {
 
 /// Which body is due next: a calendar queue [Brown1988] of one entry a body.
 ///
-/// Days hold some eight entries each, in the order in which they were made; only those of today are
-/// in a heap. What is due in another week is sorted by days when that begins: weeks are so few that
-/// where each of them ends stays in the cache, days are not. An entry is put off by making another:
-/// older ones of the body are passed over.
-/// Entries at the same instant come in the order of their keys. What a calendar costs does not
-/// depend on how many bodies there are; the length of its days adapts. Who is due when is not kept
-/// here: a *source* tells it again when the day comes.
+/// Days hold some eight entries each, in the order in which they were made; those of today are
+/// sorted when it begins, and what is put later that day, which is rare, is in a heap. What is due
+/// in another week is sorted by days when that begins: weeks are so few that where each of them
+/// ends stays in the cache, days are not. An entry is put off by making another: older ones of the
+/// body are passed over. Entries at the same instant come in the order of their keys. What a
+/// calendar costs does not depend on how many bodies there are; the length of its days adapts. Who
+/// is due when is not kept here: a *source* tells it again when the day comes.
 class EventCalendar {
  public:
   /// When a body is due, and what goes first at the same instant.
@@ -49,8 +50,11 @@ class EventCalendar {
   /// It is not due any more.
   void drop(std::uint32_t body) { ++latest_[body]; }
   /// The earliest; null: nobody is due. Valid until the next `put`.
-  [[nodiscard]] const Entry* first(const Source& source);
-  /// Who is due today, and some who were, the earliest first and the others in no order.
+  [[nodiscard]] const Entry* first(const Source& source) {
+    const Entry* const earliest = first_of_today();
+    return earliest != nullptr ? earliest : first_after_today(source);
+  }
+  /// Who is due today and was when it began, and some who were, the earliest last.
   [[nodiscard]] std::span<const Entry> today() const { return today_; }
   /// How many days have begun.
   [[nodiscard]] std::uint64_t days_begun() const { return days_begun_; }
@@ -71,7 +75,13 @@ class EventCalendar {
     std::uint32_t next = none;
   };
 
-  static bool later(const Entry& x, const Entry& y);
+  static bool later(const Entry& x, const Entry& y) {
+    if (x.time.seconds != y.time.seconds) {
+      return x.time.seconds > y.time.seconds;
+    }
+    return std::tuple(x.time.correction, x.key, x.key2) >
+           std::tuple(y.time.correction, y.key, y.key2);
+  }
   template <typename EntryOrSlip>
   [[nodiscard]] bool current(const EntryOrSlip& entry) const {
     return entry.stamp == latest_[entry.body];
@@ -81,6 +91,18 @@ class EventCalendar {
   void note(std::uint32_t& in, const Slip& slip);
   template <typename See>
   void tear_off(std::uint32_t& from, const See& see);
+  /// The earliest of today's; null: none is left. Those that are over are taken off.
+  [[nodiscard]] const Entry* first_of_today() {
+    while (!today_.empty() && !current(today_.back())) {
+      today_.pop_back();
+    }
+    if (late_.empty()) {
+      return today_.empty() ? nullptr : &today_.back();
+    }
+    return first_of_late();
+  }
+  [[nodiscard]] const Entry* first_of_late();
+  [[nodiscard]] const Entry* first_after_today(const Source& source);
   [[nodiscard]] std::size_t days_ahead() const { return weeks_.size() * days_.size(); }
   void begin_week(std::int64_t week);
   void file_far(const Source& source);
@@ -89,7 +111,8 @@ class EventCalendar {
   void renew(const Source& source);
 
   std::vector<std::uint32_t> latest_;  ///< stamps, by body
-  std::vector<Entry> today_;           ///< a heap, the earliest first
+  std::vector<Entry> today_;           ///< the earliest last
+  std::vector<Entry> late_;            ///< today's, too: a heap, the earliest first
   std::vector<std::uint32_t> days_;    ///< of this week: the first page of each; or none
   std::vector<std::uint32_t> weeks_;   ///< the next ones, a ring: the same
   std::vector<Page> pages_;

@@ -67,20 +67,24 @@ std::string EventContacts::unkept() const {
 void EventContacts::set_free(std::span<const BodyIndex> bodies, Instant t) {
   const auto changes = modes_.part(bodies);
   for (const BodyIndex i : bodies) {
-    if (joints_of(i) == nullptr) {
-      motions_.bring_others(i, t);
-    } else {
-      part_jointed(i, t);
+    const std::vector<BodyIndex>& island = motions_.island(i);
+    const bool hangs = joints_of(i) != nullptr || island.size() > 1;
+    for (const BodyIndex k : island) {
+      // What joints hold together was struck together.
+      if (joints_of(i) == nullptr && std::find(bodies.begin(), bodies.end(), k) == bodies.end()) {
+        motions_.bring(k, t);
+      }
+    }
+    if (hangs) {
+      part_hanging(i, t);
     }
     if (motions_.support(i)) {
       resume_support(i, t);
     }
-    const std::vector<BodyIndex>& island = motions_.island(i);
-    const bool launched =
-        joints_of(i) != nullptr && std::any_of(bodies.begin(), bodies.end(), [&](BodyIndex k) {
-          return std::find(island.begin(), island.end(), k) <
-                 std::find(island.begin(), island.end(), i);
-        });
+    const bool launched = hangs && std::any_of(bodies.begin(), bodies.end(), [&](BodyIndex k) {
+                            return std::find(island.begin(), island.end(), k) <
+                                   std::find(island.begin(), island.end(), i);
+                          });
     if (!launched) {
       motions_.launch(i, t);
     }
@@ -99,6 +103,13 @@ void EventContacts::settle_anew(BodyIndex i, Instant t) {
     return;
   }
   const std::string why = unkept();
+  // Where a corner is to strike at once, it does.
+  if (const auto worst = modes_.worst_approach(bodies, {}, true)) {
+    motions_.open_pair(worst->a, worst->b, t);
+    Event event{.time = t, .kind = EventKind::impact, .a = worst->a, .b = worst->b};
+    event.contact = worst->contact;
+    return meet(event, t);
+  }
   set_free(bodies, t);
   run_.stop(t, fmt::format("contact: the contacts of '{}' cannot be kept from here on: {}",
                            run_.model.body(i).name, why));
@@ -127,7 +138,7 @@ void EventContacts::stay(BodyIndex a, BodyIndex b, Instant t) {
     return depart(a, b, t);
   }
   const Contact contact = contact_at(a, b, t, 0.0);
-  if (lands(a, b, contact, t) || settle(pair, t, {.unloaded = true, .may_turn = true})) {
+  if (lands(a, b, contact, t) || settle_stalled(pair, t)) {
     return;
   }
   if (meet_elsewhere(a, b, t)) {
@@ -135,6 +146,26 @@ void EventContacts::stay(BodyIndex a, BodyIndex b, Instant t) {
   }
   depart(a, b, t);
   run_.stop(t, fmt::format("accumulation: {} stay in contact; {}", run_.names(a, b), unkept()));
+}
+
+/// Settles what is in touch where time does not go on. Where that was done in vain again and again,
+/// it turns, as over a rim; or a step is made over all of it.
+bool EventContacts::settle_stalled(std::span<const BodyIndex> seeds, Instant t) {
+  constexpr int most_in_vain = 8;
+  stalled_ = stalled_at_ == t ? stalled_ + 1 : 0;
+  stalled_at_ = t;
+  const auto settle_turned = [&](bool step_over) {
+    return settle(seeds, t,
+                  {.turning = true, .may_turn = true, .not_flat = true, .step_over = step_over});
+  };
+  const bool settled = (stalled_ > most_in_vain && (settle_turned(false) || settle_turned(true))) ||
+                       settle(seeds, t, {.unloaded = true, .may_turn = true});
+  if (settled) {
+    for (const BodyIndex i : seeds) {
+      accumulation_.go_on(i);
+    }
+  }
+  return settled;
 }
 
 /// Handles an impact where two bodies in touch come together elsewhere than at their nearest
@@ -174,13 +205,14 @@ void EventContacts::touch(BodyIndex a, BodyIndex b, const Contact& contact, Inst
     modes_.bring_group(bodies, t);
     // Asked again and again, it is at a rim: what goes over that turns.
     const bool again = accumulation_.stalls(a, b, t, least_progress * run_.epoch());
-    return settle(bodies, t, {.unloaded = true, .may_turn = again}) ? void() : set_free(bodies, t);
+    const bool settled = again ? settle_stalled(bodies, t) : settle(bodies, t, {.unloaded = true});
+    return settled ? void() : set_free(bodies, t);
   }
   if (settle(pair, t, {.pressed = BodyPair{a, b}}) || meet_elsewhere(a, b, t)) {
     return;
   }
   if (accumulation_.stalls(a, b, t, least_progress * run_.epoch())) {
-    if (settle(pair, t, {.unloaded = true, .may_turn = true})) {
+    if (settle_stalled(pair, t)) {
       return;
     }
     depart(a, b, t);
@@ -214,7 +246,7 @@ void EventContacts::look_again(BodyIndex a, BodyIndex b, Instant t, double brack
   const double window = std::min({motions_.of(a).duration, motions_.of(b).duration, run_.epoch()});
   if (accumulation_.stalls(a, b, t, least_progress * window)) {
     const std::array<BodyIndex, 2> pair{a, b};
-    if (settle(pair, t, {.unloaded = true, .may_turn = true}) || meet_elsewhere(a, b, t)) {
+    if (settle_stalled(pair, t) || meet_elsewhere(a, b, t)) {
       return;
     }
     return run_.stop(t, fmt::format("accumulation: whether {} touch is undecided again and again, "
@@ -302,8 +334,11 @@ void EventContacts::depart(BodyIndex a, BodyIndex b, Instant t) {
     }
     // Bodies that joints hold together were struck together.
     if (joints_of(i) != nullptr) {
-      part_jointed(i, t);
+      part_hanging(i, t);
     } else if (run_.model.is_free(i)) {
+      if (motions_.island(i).size() > 1) {
+        part_hanging(i, t);
+      }
       for (const BodyIndex k : motions_.island(i)) {
         if (k != a && k != b) {
           motions_.bring(k, t);
@@ -500,6 +535,7 @@ void EventContacts::Touching::persist(Archive& archive) { archive(settled, conta
 void EventContacts::persist(Archive& archive) {
   std::size_t n = touching_.size();
   archive.count(n);
+  archive(stalled_, stalled_at_, pushed_, pushed_in_);
   if (archive.reading()) {
     for (std::size_t k = 0; k < n; ++k) {
       BodyIndex i = 0;

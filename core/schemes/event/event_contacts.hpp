@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/contacts/contact_sweeps.hpp"
 #include "core/schemes/event/event_accumulation.hpp"
 #include "core/schemes/event/event_modes.hpp"
 #include "core/schemes/event/event_motions.hpp"
@@ -59,6 +60,10 @@ class EventContacts {
   };
 
   [[nodiscard]] bool impact_of_balls(BodyIndex a, BodyIndex b, Instant t, double bracket);
+  [[nodiscard]] bool is_wall(BodyIndex i) const;
+  [[nodiscard]] Contact contact_of_balls(const Event& event, const PlainBall* ball_a,
+                                         const PlainBall* ball_b) const;
+  void go_on_plain(const Event& event, const PlainBall* ball_a, const PlainBall* ball_b);
   bool meet_in_one_box(BodyIndex a, BodyIndex b, Instant t);
   void meet(Event& event, Instant t);
   void go_on_struck(const Event& event, double approach, std::vector<BodyIndex> group, Instant t);
@@ -67,8 +72,9 @@ class EventContacts {
   void strike(Event& event);
   [[nodiscard]] const JointSystem* joints_of(BodyIndex i) const;
   void strike_jointed(Event& event);
+  void rub_jointed(Event& event);
   [[nodiscard]] bool rest_on_joints(const Event& event, Instant t);
-  void part_jointed(BodyIndex i, Instant t);
+  void part_hanging(BodyIndex i, Instant t);
   [[nodiscard]] std::pair<BodyState, BodyState> would_leave(const Event& event,
                                                             const BodyInertia& inertia_a,
                                                             const BodyInertia& inertia_b) const;
@@ -77,6 +83,7 @@ class EventContacts {
   [[nodiscard]] bool still_approaching(const Event& event, double approach, Instant t);
   [[nodiscard]] bool settle(std::span<const BodyIndex> seeds, Instant t,
                             const EventModes::SettleOptions& options = {});
+  [[nodiscard]] bool settle_stalled(std::span<const BodyIndex> seeds, Instant t);
   [[nodiscard]] bool could_be_supported(BodyIndex a, BodyIndex b, Instant t) const;
   [[nodiscard]] std::string unkept() const;
   [[nodiscard]] bool strike_group(const Event& first, double approach);
@@ -90,6 +97,13 @@ class EventContacts {
   void hand_on(const Event& first, double approach, std::vector<BodyIndex> bodies, Instant t);
   void go_on_from(std::span<const BodyIndex> bodies, const BodyPair& first, double approach,
                   Instant t);
+  [[nodiscard]] bool end_by_pushing(std::span<const BodyIndex> seeds, double remaining, Instant t);
+  [[nodiscard]] std::vector<BodyIndex> give(const EventModes::GroupImpact& impact,
+                                            const std::vector<ContactSweeps::Vector6>& velocities,
+                                            std::span<const BodyIndex> seeds, Instant t);
+  void book_pushes(const EventModes::GroupImpact& impact, std::span<const SweptTouch> touches,
+                   const ContactSweeps::Swept& swept,
+                   const std::vector<ContactSweeps::Vector6>& before);
   void set_free(std::span<const BodyIndex> bodies, Instant t);
   [[nodiscard]] Contact contact_at(BodyIndex a, BodyIndex b, Instant t, double bracket) const;
   void look_again(BodyIndex a, BodyIndex b, Instant t, double bracket);
@@ -117,6 +131,10 @@ class EventContacts {
   const BallDetector* ball_detector_;
   /// Balls that a face supports, or has: few of many.
   std::map<BodyIndex, Touching> touching_;
+  int stalled_ = 0;  ///< how often bodies in touch were settled at one instant, and when
+  Instant stalled_at_ = Instant::never();
+  int pushed_ = 0;           ///< how often impacts were ended by pushing, in the frame `pushed_in_`
+  double pushed_in_ = -1.0;  ///< counted from the start of the run
 };
 
 }  // namespace core

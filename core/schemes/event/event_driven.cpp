@@ -9,11 +9,11 @@ inline namespace core {
 namespace {
 
 /// Why this scheme cannot run a scene with such joints; empty if it can.
-std::string refuses_joints(const Model& model, const Method& method) {
+std::string refuses_joints(const Method& method) {
   if (!method.law->info().passed_on_by_joints) {
     return fmt::format(
         "the impact law '{}' knows nothing of the joints of the scene; allowed: "
-        "newton, moreau, reflections",
+        "newton, routh, moreau, reflections",
         method.law->info().name);
   }
   if (method.detector->info().at_step_ends) {
@@ -21,15 +21,6 @@ std::string refuses_joints(const Model& model, const Method& method) {
         "the detector '{}' finds contacts within steps of the integrator, which "
         "joints put back onto their constraints; allowed: another detector",
         method.detector->info().name);
-  }
-  for (BodyIndex i = 0; i < model.size(); ++i) {
-    if (model.has_friction() && model.is_free(i) && model.jointed(i) &&
-        model.body(i).friction > 0.0) {
-      return fmt::format(
-          "'{}' hangs on a joint and has friction, which is not treated together; "
-          "allowed: friction = 0 for it",
-          model.body(i).name);
-    }
   }
   return {};
 }
@@ -51,7 +42,7 @@ class EventDriven final : public Scheme {
       return "event-driven needs a detector that locates contacts in time";
     }
     if (!model.scene().joints.empty()) {
-      if (std::string reason = refuses_joints(model, method); !reason.empty()) {
+      if (std::string reason = refuses_joints(method); !reason.empty()) {
         return reason;
       }
     }

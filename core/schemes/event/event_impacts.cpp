@@ -23,6 +23,7 @@ inline namespace core {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double infinity = std::numeric_limits<double>::infinity();
 /// How often where a patch is pressed is put where the impulse that follows from that asks for.
 constexpr int most_presses = 32;
 
@@ -60,6 +61,36 @@ Vector3 nearest_point(const ContactManifold& manifold, const Vector3& x) {
     }
   }
   return nearest;
+}
+
+/// The two that began an impact strike where they came together. What is in touch at one point of a
+/// corner may part at another, whose normal is not the same.
+void strike_where_met(const Event& first, double restitution, EventModes::GroupImpact& impact) {
+  const auto place = [&](BodyIndex i) {
+    return static_cast<std::size_t>(std::find(impact.bodies.begin(), impact.bodies.end(), i) -
+                                    impact.bodies.begin());
+  };
+  const BodyPair pair{first.a, first.b};
+  const auto p = static_cast<std::size_t>(
+      std::find(impact.pairs.begin(), impact.pairs.end(), pair) - impact.pairs.begin());
+  for (std::size_t r = 0; r < impact.system.rows.size(); ++r) {
+    if (impact.pair_of_row[r] == p &&
+        impact.system.rate(impact.system.rows[r], impact.velocities) < 0.0) {
+      return;
+    }
+  }
+  impact.system.add(place(first.a), place(first.b), first.contact.point, first.contact.normal);
+  if (!(impact.system.rate(impact.system.rows.back(), impact.velocities) < 0.0)) {
+    impact.system.rows.pop_back();
+    return;
+  }
+  if (p == impact.pairs.size()) {
+    impact.pairs.push_back(pair);
+  }
+  impact.pair_of_row.push_back(p);
+  impact.gaps.push_back(first.contact.gap);
+  impact.restitution.conservativeResize(impact.restitution.size() + 1);
+  impact.restitution[impact.restitution.size() - 1] = restitution;
 }
 
 }  // namespace
@@ -106,54 +137,96 @@ double EventContacts::passes_by(BodyIndex a, BodyIndex b, Instant t) const {
                      {run_.model.shape(b), of_b.motion()}, motions_.now(b), t);
 }
 
-/// `impact` of two plain balls that nothing else touches, without looking for what they have not:
-/// the same, bit by bit. False, and nothing has changed but that both are open, where more may have
-/// to be done.
+/// Whether body i is a fixed half-space.
+bool EventContacts::is_wall(BodyIndex i) const {
+  return run_.model.mobility(i) == Mobility::fixed &&
+         std::holds_alternative<HalfSpace>(run_.model.shape(i));
+}
+
+/// Where the two of an impact, of which the states are set, touch, and how they bounce; null: a
+/// wall.
+Contact EventContacts::contact_of_balls(const Event& event, const PlainBall* ball_a,
+                                        const PlainBall* ball_b) const {
+  const Pose& at_a = event.before_a.pose;
+  const Pose& at_b = event.before_b.pose;
+  const bool wall = ball_a == nullptr || ball_b == nullptr;
+  const Overlap o =
+      wall ? run_.detector.overlap(run_.model.shape(event.a), at_a, run_.model.shape(event.b), at_b)
+           : ball_detector_->ball_overlap(at_a.position, ball_a->radius, at_b.position,
+                                          ball_b->radius);
+  return {o.point, o.normal, o.gap,
+          wall ? run_.model.restitution(event.a, event.b)
+               : run_.plain_balls.restitution(*ball_a, *ball_b)};
+}
+
+/// `impact` of two plain balls, or of one and a wall without friction, that nothing else touches,
+/// without looking for what they have not: the same, bit by bit. False, and nothing has changed but
+/// that both are open, where more may have to be done.
 bool EventContacts::impact_of_balls(BodyIndex a, BodyIndex b, Instant t, double bracket) {
-  if (point_law_ == nullptr || ball_detector_ == nullptr || !graph_.empty() ||
-      !motions_.is_plain(a) || !motions_.is_plain(b)) {
+  if (point_law_ == nullptr || ball_detector_ == nullptr || !graph_.empty()) {
     return false;
   }
-  const PlainBall* const ball_a = run_.plain_balls.find(a);
-  const PlainBall* const ball_b = run_.plain_balls.find(b);
+  const PlainBall* const ball_a = motions_.is_plain(a) ? run_.plain_balls.find(a) : nullptr;
+  const PlainBall* const ball_b = motions_.is_plain(b) ? run_.plain_balls.find(b) : nullptr;
   if (ball_a == nullptr || ball_b == nullptr) {
-    return false;
+    const bool meets_wall = (ball_a != nullptr && is_wall(b)) || (ball_b != nullptr && is_wall(a));
+    if (!meets_wall || run_.model.friction(a, b) != 0.0) {
+      return false;
+    }
   }
   Event event = impact_in(a, b, t, bracket);
-  event.before_a = event.after_a = motions_.open_ball(a, *ball_a, t);
-  event.before_b = event.after_b = motions_.open_ball(b, *ball_b, t);
-  const Overlap o = ball_detector_->ball_overlap(event.before_a.pose.position, ball_a->radius,
-                                                 event.before_b.pose.position, ball_b->radius);
-  event.contact = {o.point, o.normal, o.gap, run_.plain_balls.restitution(*ball_a, *ball_b)};
-  const auto rate = [&o](const BodyState& of_a, const BodyState& of_b) {
-    return o.normal.dot(of_b.twist.linear - of_a.twist.linear);
+  const auto open = [&](BodyIndex i, const PlainBall* ball) {
+    return ball != nullptr ? motions_.open_ball(i, *ball, t) : motions_.now(i);
+  };
+  event.before_a = event.after_a = open(a, ball_a);
+  event.before_b = event.after_b = open(b, ball_b);
+  event.contact = contact_of_balls(event, ball_a, ball_b);
+  const auto rate = [&event](const BodyState& of_a, const BodyState& of_b) {
+    return event.contact.normal.dot(of_b.twist.linear - of_a.twist.linear);
   };
   const double approach = rate(event.before_a, event.before_b);
-  if (!(approach < 0.0) || o.gap > predictor_.least_touching_gap(*ball_a, *ball_b)) {
+  if (!(approach < 0.0) || event.contact.gap > predictor_.least_touching_gap(ball_a, ball_b)) {
     return false;
   }
+  const auto mass = [](const PlainBall* ball) { return ball != nullptr ? ball->mass : infinity; };
   const ImpactEnergy energy =
-      point_law_->apply_to_points(event.contact, {ball_a->mass, event.after_a.twist.linear},
-                                  {ball_b->mass, event.after_b.twist.linear});
-  run_.struck(event, *ball_a, *ball_b);
+      point_law_->apply_to_points(event.contact, {mass(ball_a), event.after_a.twist.linear},
+                                  {mass(ball_b), event.after_b.twist.linear});
+  run_.struck(event, ball_a, ball_b);
   run_.ledger.add(EnergyLine::restitution_loss, energy.restitution_loss);
-  const EventAccumulation::Rebound rebound{*ball_a, *ball_b, event, -approach,
+  const EventAccumulation::Rebound rebound{ball_a, ball_b, event, -approach,
                                            rate(event.after_a, event.after_b)};
-  const bool parts = accumulation_.part_for_sure(rebound);
-  if (parts && accumulation_.go_on_for_sure(rebound)) {
-    motions_.launch_ball(a, *ball_a, event.after_a, t);
-    motions_.launch_ball(b, *ball_b, event.after_b, t);
-    predictor_.predict_struck(a, b, t);
+  const EventAccumulation::Scale scale = accumulation_.scale_of(rebound);
+  const bool parts = EventAccumulation::part_for_sure(rebound, scale);
+  if (parts && accumulation_.go_on_for_sure(rebound, scale)) {
+    go_on_plain(event, ball_a, ball_b);
     return true;
   }
   motions_.now(a) = event.after_a;
   motions_.now(b) = event.after_b;
   if (parts) {
-    go_on_as_found(event, accumulation_.after_impact(rebound), t);
+    go_on_as_found(event, accumulation_.after_impact(rebound, scale), t);
   } else {
     go_on_struck(event, approach, {}, t);
   }
   return true;
+}
+
+/// The two go on as the impact has left them; null: a wall.
+void EventContacts::go_on_plain(const Event& event, const PlainBall* ball_a,
+                                const PlainBall* ball_b) {
+  const auto [a, b, t] = std::tuple{event.a, event.b, event.time};
+  if (ball_a != nullptr) {
+    motions_.launch_ball(a, *ball_a, event.after_a, t);
+  }
+  if (ball_b != nullptr) {
+    motions_.launch_ball(b, *ball_b, event.after_b, t);
+  }
+  if (ball_a != nullptr && ball_b != nullptr) {
+    predictor_.predict_struck(a, b, t);
+  } else {
+    predictor_.predict(ball_a != nullptr ? a : b, t);
+  }
 }
 
 void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double bracket, bool decided) {
@@ -259,6 +332,9 @@ void EventContacts::go_on_as_found(const Event& event, const EventAccumulation::
     }
     // What turns may be slow in its middle and come together at its corners.
     if (finding.kind == Kind::rests && meet_elsewhere(a, b, t)) {
+      return;
+    }
+    if (finding.kind != Kind::rests && end_by_pushing(pair, finding.remaining, t)) {
       return;
     }
   }
@@ -427,22 +503,29 @@ bool EventContacts::still_approaching(const Event& event, double approach, Insta
   const auto [a, b] = std::pair{event.a, event.b};
   const double rebound = normal_velocity(event.contact, event.after_a, event.after_b);
   double scale = std::abs(approach);
+  double unfelt = 0.0;  // levers that coordinates cannot tell from none turn nothing
   for (const BodyState* after : {&event.after_a, &event.after_b}) {
-    scale += after->twist.linear.norm() +
-             after->twist.angular.norm() * (event.contact.point - after->pose.position).norm();
+    const Vector3 arm = event.contact.point - after->pose.position;
+    const double spin = after->twist.angular.norm();
+    scale += after->twist.linear.norm() + spin * arm.norm();
+    unfelt +=
+        512.0 * epsilon * spin * (arm.lpNorm<1>() + after->pose.position.lpNorm<Eigen::Infinity>());
   }
   // Roundoff of a product and a few sums; with friction, the tolerance to which an impact is
   // integrated; with joints, roundoff of the equations by which they pass it on.
-  const bool exact =
-      run_.model.friction(a, b) == 0.0 && joints_of(a) == nullptr && joints_of(b) == nullptr;
-  const double allowed = exact ? 16.0 * epsilon : 1e-12;
-  if (!(rebound < -allowed * scale)) {
+  const bool jointed = joints_of(a) != nullptr || joints_of(b) != nullptr;
+  const bool rough = run_.model.friction(a, b) > 0.0;
+  const double allowed = rough || jointed ? 1e-12 : 16.0 * epsilon;
+  if (!(rebound < -(allowed * scale + unfelt))) {
     return false;
   }
   depart(a, b, t);
   run_.stop(t, fmt::format("still approaching: the impact law '{}' leaves {} approaching each "
-                           "other at {} m/s",
-                           run_.law.info().name, run_.names(a, b), -rebound));
+                           "other at {} m/s{}",
+                           run_.law.info().name, run_.names(a, b), -rebound,
+                           rough && jointed ? ": friction locks what joints press together, and no "
+                                              "impulse parts them; allowed: less friction"
+                                            : ""));
   return true;
 }
 
@@ -524,15 +607,16 @@ bool EventContacts::strike_group(const Event& first, double approach) {
   if (law == nullptr || !(held || law->takes_what_touches())) {
     return false;
   }
-  EventModes::GroupImpact impact = modes_.impact_group(pair, t, law->takes_what_touches());
-  if (std::any_of(impact.pairs.begin(), impact.pairs.end(), [&](const BodyPair& p) {
-        return run_.model.friction(p.first, p.second) > 0.0;
-      })) {
+  EventModes::GroupImpact impact =
+      modes_.impact_group(std::array{pair.first, pair.second}, t, law->takes_what_touches());
+  const auto rubs = [&](const BodyPair& p) { return run_.model.friction(p.first, p.second) > 0.0; };
+  if (rubs(pair) || std::any_of(impact.pairs.begin(), impact.pairs.end(), rubs)) {
     return false;  // with friction, pairs are struck one after the other
   }
   if (!impact.refusal.empty() || impact.pairs.size() < (held ? 1U : 2U)) {
     return false;
   }
+  strike_where_met(first, run_.model.restitution(pair.first, pair.second), impact);
   std::vector<Twist> velocities = impact.velocities;
   const Eigen::VectorXd impulses = law->strike(impact.system, impact.restitution, velocities);
   if (impulses.size() == 0) {
@@ -682,6 +766,9 @@ void EventContacts::hand_on(const Event& first, double approach, std::vector<Bod
       break;
     }
     if (round == most) {
+      if (end_by_pushing(bodies, 0.0, t)) {
+        return;
+      }
       set_free(bodies, t);
       return run_.stop(t, fmt::format("accumulation: an impact of {} is handed on between bodies "
                                       "in touch more than {} times; {}",
@@ -714,8 +801,12 @@ void EventContacts::go_on_from(std::span<const BodyIndex> bodies, const BodyPair
               .may_part = !finding.endless})) {
     return;
   }
+  const bool endless = finding.kind != Kind::none && !finding.goes_on;
+  if (unite && !finding.goes_on && end_by_pushing(bodies, finding.remaining, t)) {
+    return;
+  }
   set_free(bodies, t);
-  if (finding.kind != Kind::none && !finding.goes_on) {
+  if (endless) {
     run_.stop(t, finding.kind == Kind::squeezed ? finding.reason
                                                 : fmt::format("{}; {}", finding.reason, unkept()));
   }

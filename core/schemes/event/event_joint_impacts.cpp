@@ -1,9 +1,12 @@
 // `EventContacts` when one of two bodies that strike hangs on joints: these pass the impact on.
+#include "core/contacts/contact_system.hpp"
+#include "core/contacts/routh_impact.hpp"
 #include "core/joint_system.hpp"
 #include "core/schemes/event/event_contacts.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace kairos {
@@ -94,6 +97,80 @@ struct JointedContact {
   }
 };
 
+/// The bodies of a contact, and all that joints hold together with either.
+struct StruckMechanisms {
+  std::vector<BodyIndex> bodies;  ///< by place
+  std::vector<BodyState> states;
+  ContactSystem system;  ///< rows: along the normal of the contact and two tangents
+  std::size_t a = 0;     ///< places of the two
+  std::size_t b = 0;
+
+  StruckMechanisms(const Model& model, const EventMotions& motions, const Event& event) {
+    std::vector<GroupMechanism> mechanisms;
+    const auto add_one = [&](BodyIndex i) {
+      bodies.push_back(i);
+      states.push_back(motions.now(i));
+      system.bodies.push_back(group_body(model.inertia(i), states.back().pose));
+    };
+    for (const BodyIndex i : {event.a, event.b}) {
+      if (place(i) < bodies.size()) {
+        continue;
+      }
+      const Island* const island =
+          model.is_free(i) ? &model.islands()[model.island_of(i)] : nullptr;
+      if (island == nullptr || island->joints == nullptr) {
+        add_one(i);
+        continue;
+      }
+      GroupMechanism mechanism{{}, island->joints};
+      for (const BodyIndex k : island->bodies) {
+        mechanism.places.push_back(bodies.size());
+        add_one(k);
+      }
+      mechanisms.push_back(std::move(mechanism));
+    }
+    a = place(event.a);
+    b = place(event.b);
+    system.joints = group_joints(mechanisms, event.time, states);
+  }
+
+  [[nodiscard]] std::size_t place(BodyIndex i) const {
+    return static_cast<std::size_t>(std::find(bodies.begin(), bodies.end(), i) - bodies.begin());
+  }
+  /// `slip`: where they slide along each other.
+  void look_along(const Vector3& point, const Vector3& n, const Vector3& slip) {
+    const auto [t1, t2] = contact_tangents(system, a, b, point, n, slip);
+    for (const Vector3& d : {n, t1, t2}) {
+      system.add(a, b, point, d);
+    }
+  }
+  [[nodiscard]] Vector3 along(const Vector3& v) const {
+    return {system.rows[0].direction.dot(v), system.rows[1].direction.dot(v),
+            system.rows[2].direction.dot(v)};
+  }
+  [[nodiscard]] Vector3 world(const Vector3& x) const {
+    return x[0] * system.rows[0].direction + x[1] * system.rows[1].direction +
+           x[2] * system.rows[2].direction;
+  }
+  [[nodiscard]] std::vector<Twist> velocities() const {
+    std::vector<Twist> v;
+    for (const BodyState& s : states) {
+      v.push_back(s.twist);
+    }
+    return v;
+  }
+  /// They go on with these velocities.
+  void put(const std::vector<Twist>& v, EventRun& run, EventMotions& motions) const {
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      if (run.model.is_free(bodies[k])) {
+        BodyState& now = motions.now(bodies[k]);
+        now.twist = v[k];
+        run.account.struck(bodies[k], states[k], now);
+      }
+    }
+  }
+};
+
 }  // namespace
 
 const JointSystem* EventContacts::joints_of(BodyIndex i) const {
@@ -103,8 +180,8 @@ const JointSystem* EventContacts::joints_of(BodyIndex i) const {
   return run_.model.is_free(i) ? run_.model.islands()[run_.model.island_of(i)].joints : nullptr;
 }
 
-/// Ends all contacts of the bodies that joints hold together with i.
-void EventContacts::part_jointed(BodyIndex i, Instant t) {
+/// Ends all contacts of the bodies that hang together with i.
+void EventContacts::part_hanging(BodyIndex i, Instant t) {
   modes_.tell(modes_.part(motions_.island(i)), t);
 }
 
@@ -118,8 +195,12 @@ void EventContacts::strike_jointed(Event& event) {
     }
   }
   event.contact.restitution = model.restitution(event.a, event.b);
+  event.contact.friction = model.friction(event.a, event.b);
   event.before_a = motions_.now(event.a);
   event.before_b = motions_.now(event.b);
+  if (event.contact.friction > 0.0) {
+    return rub_jointed(event);
+  }
   const double u = normal_velocity(event.contact, event.before_a, event.before_b);
   if (u >= 0.0) {
     // They came together only by what they were off their joints.
@@ -150,9 +231,55 @@ void EventContacts::strike_jointed(Event& event) {
   const double v = normal_velocity(event.contact, event.after_a, event.after_b);
   run_.ledger.add(EnergyLine::restitution_loss, 0.5 * p * (u + v));
   run_.ledger.add(EnergyLine::driven_work, p * (struck.of_a.driven + struck.of_b.driven) +
-                                               of_driver(event.a, -1.0) + of_driver(event.b, 1.0));
+                                               of_driver(event.a, 1.0) + of_driver(event.b, -1.0));
   ++run_.cost.impacts;
   run_.note(event);
+}
+
+/// The same with friction, as a motion in the normal impulse (`routh_impact`): the contact feels
+/// what joints leave of an impulse in every direction.
+void EventContacts::rub_jointed(Event& event) {
+  StruckMechanisms struck(run_.model, motions_, event);
+  const Vector3& n = event.contact.normal;
+  const auto belt = [&](BodyIndex i) {
+    const Vector3 v = run_.model.entity(i).surface_velocity(run_.model.body(i), motions_.now(i));
+    return Vector3(v - n * n.dot(v));
+  };
+  const Vector3 belt_a = belt(event.a);
+  const Vector3 belt_b = belt(event.b);
+  const Vector3& point = event.contact.point;
+  const auto at_point = [&](const BodyState& s) { return s.twist.at(point, s.pose.position); };
+  const Vector3 u = (at_point(event.before_b) + belt_b) - (at_point(event.before_a) + belt_a);
+  struck.look_along(point, n, u);
+  const Vector3 before = struck.along(u);
+  const Eigen::Matrix3d W = struck.system.coupling();
+  RouthImpact impact;
+  if (before[0] < 0.0 && W(0, 0) > 0.0) {
+    impact = routh_impact(W, before, event.contact.friction, event.contact.restitution);
+  }
+  if (impact.solved) {
+    std::vector<Twist> v = struck.velocities();
+    struck.system.push(impact.impulse, v);
+    struck.put(v, run_, motions_);
+    run_.ledger.add(EnergyLine::restitution_loss, impact.normal_work);
+    run_.ledger.add(EnergyLine::impact_friction, impact.friction_work);
+    const Vector3 p = struck.world(impact.impulse);
+    const auto of_driver = [&](BodyIndex i, double sign) {
+      return run_.model.mobility(i) == Mobility::driven ? sign * p.dot(at_point(motions_.now(i)))
+                                                        : 0.0;
+    };
+    run_.ledger.add(EnergyLine::driven_work, struck.system.driven_work(impact.impulse) +
+                                                 of_driver(event.a, 1.0) +
+                                                 of_driver(event.b, -1.0));
+    run_.ledger.add(EnergyLine::conveyor_and_hand, p.dot(belt_a) - p.dot(belt_b));
+  }
+  // One that was not solved goes on approaching, which the run tells.
+  event.after_a = motions_.now(event.a);
+  event.after_b = motions_.now(event.b);
+  if (impact.solved || before[0] < 0.0) {
+    ++run_.cost.impacts;
+    run_.note(event);
+  }
 }
 
 /// Whether a body that hangs on joints comes to rest on a fixed one: its hops are too small to
@@ -165,6 +292,12 @@ bool EventContacts::rest_on_joints(const Event& event, Instant t) {
   if (joints_of(body) == nullptr || joints_of(body)->driven() ||
       run_.model.mobility(other) != Mobility::fixed) {
     return false;
+  }
+  if (run_.model.friction(body, other) > 0.0 &&
+      !run_.model.entity(other)
+           .surface_velocity(run_.model.body(other), motions_.now(other))
+           .isZero(0.0)) {
+    return false;  // at rest, it is still rubbed
   }
   const JointedContact touching(run_.model, motions_, event);
   const StruckIsland& side = a_is_free ? touching.of_a : touching.of_b;

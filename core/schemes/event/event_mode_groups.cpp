@@ -68,23 +68,26 @@ double EventModes::rest_speed(BodyIndex a, BodyIndex b, const BodyState& at_a,
   const double tolerance = accumulation_.rest_tolerance(a, b, run_.model.restitution(a, b));
   double pressing = load(a, at_a).linear.norm() + load(b, at_b).linear.norm();
   double speeds = at_a.twist.linear.norm() + at_b.twist.linear.norm();
-  if (jointed(a) || jointed(b)) {
-    // Joints press, too, and pass on what is roundoff of the fastest; as where hops are judged.
+  if (hangs(a) || hangs(b)) {
+    // Joints and springs press, too, and pass on what is roundoff of the fastest; as where hops are
+    // judged.
     for (const BodyIndex i : {a, b}) {
       const auto moving = motions_.moving(i);
       const Motion& motion = moving.motion();
       const double turns = (i == a ? at_a : at_b).twist.angular.squaredNorm();
       pressing += motion.acceleration(std::min(run_.time - motion.start, motion.duration)).norm();
       pressing += turns > 0.0 ? turns * bounding_radius(run_.model.shape(i)) : 0.0;
-      for (const BodyIndex k : jointed(i) ? motions_.island(i) : std::vector<BodyIndex>()) {
+      for (const BodyIndex k : hangs(i) ? motions_.island(i) : std::vector<BodyIndex>()) {
         const Twist v = motions_.at(k, run_.time).twist;
         speeds += v.linear.norm() + v.angular.norm() * run_.model.inertia(k).bounding_radius;
       }
     }
   }
   double slow = std::sqrt(2.0 * pressing * tolerance) + 16.0 * epsilon * speeds;
-  if (options.unite && options.remaining > 0.0) {
-    slow = std::max(slow, tolerance / options.remaining);
+  if (options.unite) {
+    // What takes no time ends by what moves less than the tolerance as long as the scene lasts.
+    const double time = options.remaining > 0.0 ? options.remaining : run_.epoch();
+    slow = std::max(slow, tolerance / time);
   }
   return slow;
 }
@@ -122,7 +125,7 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
       if (island.joints != nullptr) {
         found.hangs = "'" + run_.model.body(i).name + "' hangs on a joint";
       } else if (island.bodies.size() > 1) {
-        found.refusal = "'" + run_.model.body(i).name + "' hangs on another by a force";
+        found.hangs = "'" + run_.model.body(i).name + "' hangs on another by a force";
       } else if (!island.forces.empty()) {
         found.varies = i;
       }
@@ -133,14 +136,16 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
   const auto add = [&](BodyIndex i) {
     const Island* const island =
         run_.model.is_free(i) ? &run_.model.islands()[run_.model.island_of(i)] : nullptr;
-    if (island == nullptr || island->joints == nullptr) {
+    if (island == nullptr || !hangs_together(*island)) {
       return add_one(i);
     }
     if (found.has(i)) {
       return;
     }
     GroupMechanism mechanism{{}, island->joints, island->forces};
-    mechanism.forces.pop_back();  // those of the joints
+    if (island->joints != nullptr) {
+      mechanism.forces.pop_back();  // those of the joints
+    }
     for (const BodyIndex k : island->bodies) {
       mechanism.places.push_back(found.bodies.size());
       add_one(k);
@@ -154,14 +159,21 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
   for (const BodyIndex i : sorted) {
     add(i);
   }
+  std::vector<Neighbour> seen;
   std::vector<BodyIndex> near;
   for (std::size_t k = 0; k < found.bodies.size() && found.refusal.empty(); ++k) {
     const BodyIndex i = found.bodies[k];
     if (!run_.model.is_free(i)) {
       continue;
     }
+    seen.clear();
+    predictor_.solids_near(i, seen);
     near.clear();
-    predictor_.solids_near(i, near);
+    for (const auto& [j, image] : seen) {
+      if (is_zero(image)) {  // what meets across a side goes on as one of its own box first
+        near.push_back(j);
+      }
+    }
     const std::vector<BodyIndex>& held = graph_.partners(i);
     near.insert(near.end(), held.begin(), held.end());
     std::sort(near.begin(), near.end(),
@@ -244,7 +256,7 @@ std::vector<BodyIndex> EventModes::group(std::span<const BodyIndex> seeds) const
     for (const BodyIndex j : graph_.partners(bodies[k])) {
       add(j);
     }
-    if (on_joints(bodies[k])) {
+    if (hangs_and_touches(bodies[k])) {
       for (const BodyIndex j : motions_.island(bodies[k])) {
         add(j);
       }
@@ -307,8 +319,8 @@ void EventModes::still_hold(ContactGroup& group, GroupImpact& impact) const {
   impact.driven += press_what_contradicts(held, group.radius, impact.velocities);
 }
 
-EventModes::GroupImpact EventModes::impact_group(const BodyPair& pair, Instant t, bool all) {
-  const std::array<BodyIndex, 2> seeds{pair.first, pair.second};
+EventModes::GroupImpact EventModes::impact_group(std::span<const BodyIndex> seeds, Instant t,
+                                                 bool all) {
   Gathered found = gather(seeds, t, {.impact = true, .held_only = !all});
   GroupImpact impact;
   if (!found.mechanisms.empty()) {

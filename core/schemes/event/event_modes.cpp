@@ -29,7 +29,10 @@ EventModes::EventModes(EventRun& run, EventMotions& motions, EventPredictor& pre
       accumulation_(accumulation),
       graph_(graph),
       stepper_(std::move(stepper)),
-      has_turned_(run.model.size()) {}
+      has_turned_(run.model.size()) {
+  const auto& islands = run.model.islands();
+  some_hang_ = std::any_of(islands.begin(), islands.end(), hangs_together);
+}
 
 bool EventModes::settle(std::span<const BodyIndex> seeds, Instant t, const Adopt& adopt,
                         const SettleOptions& options) {
@@ -110,6 +113,9 @@ bool EventModes::settle_once(std::span<const BodyIndex> seeds, Instant t, const 
   }
   if (options.turning_only && !has_turned(seeds)) {
     return false;
+  }
+  if (options.not_flat) {
+    return settle_turning(seeds, t, adopt, options);
   }
   if (!found.hangs.empty()) {
     why_not_ = found.hangs;
@@ -309,8 +315,8 @@ void EventModes::commit(const Gathered& found, const FlatMode& mode, Instant t, 
   for (std::size_t k = 0; k < found.bodies.size(); ++k) {
     const BodyIndex i = found.bodies[k];
     if (run_.model.is_free(i)) {
-      if (on_joints(i)) {
-        go_on_jointed(found, k, t, turning);
+      if (hangs_and_touches(i)) {
+        go_on_hanging(found, k, t, turning);
       } else if (graph_.holds(i)) {
         Twist acceleration = mode.accelerations[k];
         if (mode.slip.empty() || found.group.round[k] == 0) {
@@ -337,8 +343,8 @@ void EventModes::commit(const Gathered& found, const FlatMode& mode, Instant t, 
   }
 }
 
-/// What joints hold together goes on together, with the first of its bodies.
-void EventModes::go_on_jointed(const Gathered& found, std::size_t k, Instant t,
+/// What joints or forces hold together goes on together, with the first of its bodies.
+void EventModes::go_on_hanging(const Gathered& found, std::size_t k, Instant t,
                                const Turning* turning) {
   const BodyIndex i = found.bodies[k];
   const std::vector<BodyIndex>& island = motions_.island(i);
@@ -377,7 +383,7 @@ void EventModes::set_friction(const Gathered& found, const FlatMode& mode, Insta
       return Vector3(sign * r * n);
     };
     const auto moves_by_itself = [&](BodyIndex i) { return !run_.model.is_free(i); };
-    const Grade grade = mode.turns ? Grade::sampled : Grade::exact;
+    const Grade grade = mode.grade;
     Patch& held = *graph_.find(a, b);
     const Slip before =
         std::exchange(held.slip, mode.slip[p] == Slip::begins ? Slip::slides : mode.slip[p]);
@@ -446,8 +452,7 @@ std::vector<EventModes::Change> EventModes::join_and_part(const Gathered& found,
     const Patch patch = *graph_.find(a, b);
     graph_.part(a, b);
     if (patch.told) {
-      changes.push_back(
-          {EventKind::contact_ends, a, b, patch.turns ? Grade::sampled : Grade::exact});
+      changes.push_back({EventKind::contact_ends, a, b, patch.grade});
     }
   }
   for (std::size_t p = 0; p < found.pairs.size(); ++p) {
@@ -459,6 +464,7 @@ std::vector<EventModes::Change> EventModes::join_and_part(const Gathered& found,
     Patch& patch = graph_.join(a, b);
     patch.manifold = found.group.patches[p].manifold;
     patch.turns = mode.turns;
+    patch.grade = mode.grade;
     if (!is_new && !(mode.turns && !patch.told)) {
       continue;
     }
@@ -476,8 +482,7 @@ std::vector<EventModes::Change> EventModes::join_and_part(const Gathered& found,
       run_.agenda.push(patch.begins, DueKind::contact_begins, a, b);
     } else {
       patch.told = true;
-      changes.push_back({EventKind::contact_begins, a, b,
-                         mode.turns ? Grade::sampled : Grade::exact,
+      changes.push_back({EventKind::contact_begins, a, b, mode.grade,
                          mode.turns ? Event{}.bracket : found.remaining});
     }
   }

@@ -2,6 +2,7 @@
 
 #include "core/contacts/contact_graph.hpp"
 #include "core/contacts/friction_modes.hpp"
+#include "core/contacts/touch.hpp"
 #include "core/schemes/event/event_accumulation.hpp"
 #include "core/schemes/event/event_motions.hpp"
 #include "core/schemes/event/event_predictor.hpp"
@@ -46,7 +47,10 @@ class EventModes {
     std::span<const BodyPair> apart = {};  ///< unite: what parts, however slowly
     /// What cannot go on otherwise may turn: the run would stop. What has turned may always.
     bool may_turn = false;
-    bool may_part = true;  ///< may_turn: what nothing presses goes on by itself
+    bool may_part = true;   ///< may_turn: what nothing presses goes on by itself
+    bool not_flat = false;  ///< that nothing turns was tried in vain
+    /// Time does not go on otherwise: a step is made over all that is in touch, pressed or not.
+    bool step_over = false;
   };
   /// Settles all that touches the seeds at t, whose states are at `now`; false, and nothing has
   /// changed, where they cannot go on in touch. `why_not` then says why.
@@ -56,7 +60,7 @@ class EventModes {
 
   /// Whether contact forces hold this free body.
   [[nodiscard]] bool holds(BodyIndex i) const {
-    return run_.model.is_free(i) && (graph_.holds(i) || (on_joints(i) && holds_island(i)));
+    return run_.model.is_free(i) && (graph_.holds(i) || (hangs_and_touches(i) && holds_island(i)));
   }
   /// Free bodies that lie on a surface, by name.
   [[nodiscard]] std::vector<BodyIndex> held_by(BodyIndex surface) const;
@@ -103,8 +107,8 @@ class EventModes {
     double driven = 0.0;       ///< work of what joints hang on in what led to the velocities, J
     std::string refusal;       ///< why it is none
   };
-  /// What the pair, whose states are at `now`, is in touch with: all of it, or what is held.
-  [[nodiscard]] GroupImpact impact_group(const BodyPair& pair, Instant t, bool all);
+  /// What these bodies, whose states are at `now`, are in touch with: all of it, or what is held.
+  [[nodiscard]] GroupImpact impact_group(std::span<const BodyIndex> seeds, Instant t, bool all);
 
   /// A pair is in touch from now on, its bodies at rest; its bounces will have died down after
   /// `remaining`, s.
@@ -120,16 +124,20 @@ class EventModes {
   void persist(Archive& archive);
 
  private:
-  [[nodiscard]] bool on_joints(BodyIndex i) const { return !graph_.empty() && jointed(i); }
-  [[nodiscard]] bool jointed(BodyIndex i) const {
-    return !run_.model.scene().joints.empty() && run_.model.is_free(i) &&
-           run_.model.islands()[run_.model.island_of(i)].joints != nullptr;
+  /// Whether joints hold its bodies together, or forces between them.
+  [[nodiscard]] static bool hangs_together(const Island& island) {
+    return island.joints != nullptr || island.bodies.size() > 1;
+  }
+  [[nodiscard]] bool hangs_and_touches(BodyIndex i) const { return !graph_.empty() && hangs(i); }
+  [[nodiscard]] bool hangs(BodyIndex i) const {
+    return some_hang_ && run_.model.is_free(i) &&
+           hangs_together(run_.model.islands()[run_.model.island_of(i)]);
   }
   [[nodiscard]] bool holds_island(BodyIndex i) const;
   struct Gathered;
   /// A step of a group that turns.
   struct Turning;
-  void go_on_jointed(const Gathered& found, std::size_t k, Instant t, const Turning* turning);
+  void go_on_hanging(const Gathered& found, std::size_t k, Instant t, const Turning* turning);
   [[nodiscard]] Gathered gather(std::span<const BodyIndex> seeds, Instant t,
                                 const SettleOptions& options);
   [[nodiscard]] double rest_speed(BodyIndex a, BodyIndex b, const BodyState& at_a,
@@ -157,11 +165,21 @@ class EventModes {
   [[nodiscard]] bool settle_turning(std::span<const BodyIndex> seeds, Instant t, const Adopt& adopt,
                                     const SettleOptions& options);
   [[nodiscard]] std::string add_touches(Gathered& found, Instant t, Turning& turning) const;
+  [[nodiscard]] bool has_belts_on_faces(const Touch& touch, BodyIndex a, BodyIndex b) const;
   [[nodiscard]] std::string add_rims(const Gathered& found, Turning& turning) const;
   [[nodiscard]] static bool presses(const Gathered& found, const Turning& turning,
                                     const BodyPair& pair);
   [[nodiscard]] double next_step(const Gathered& found);
-  [[nodiscard]] int short_steps(const Gathered& found);
+  [[nodiscard]] int short_steps(const Gathered& found) const;
+  [[nodiscard]] std::pair<int, int> implicit_steps(const Gathered& found) const;
+  [[nodiscard]] bool goes_on_implicitly(const Gathered& found, Instant t) const;
+  [[nodiscard]] static bool has_joints(const Gathered& found);
+  void find_forces(const Gathered& found, Turning& turning, Instant t);
+  [[nodiscard]] bool step_over(const Gathered& found, Turning& turning, Instant t,
+                               bool pressed_or_not);
+  static void count_implicit(const Turning& turning, const std::pair<int, int>& left, bool is_short,
+                             Patch& patch);
+  void keep_forces(const Gathered& found, const Turning& turning);
   [[nodiscard]] bool turned(std::span<const BodyIndex> bodies);
   [[nodiscard]] bool has_turned(std::span<const BodyIndex> bodies) const;
   [[nodiscard]] std::string why_not_turn(const Gathered& found, Instant t) const;
@@ -197,6 +215,7 @@ class EventModes {
   const EventAccumulation& accumulation_;
   ContactGraph& graph_;
   std::function<std::unique_ptr<Stepper>(double)> stepper_;  ///< see `Method::contact_stepper`
+  bool some_hang_ = false;                                   ///< some islands hang together
   std::string why_not_;
   bool not_by_pushing_ = false;  ///< see `completes`
   /// Whether a body has turned while it touched, and its steps in the frame in which it last did.

@@ -54,10 +54,16 @@ class EventMotions {
   [[nodiscard]] bool is_usual(BodyIndex i) const {
     return (ways_[i] & (all_bits | usual_bit)) == (all_bits | usual_bit);
   }
-  /// The flights of such balls, beside that of another.
-  void add_usual(std::span<const std::uint32_t> balls, FlightsBeside& beside) const {
-    table_.add_usual(balls, beside);
+  /// The flights of those of these bodies that `takes(k)`, which are such balls, beside that of
+  /// another.
+  template <typename Takes>
+  void add_usual(std::span<const std::uint32_t> bodies, FlightsBeside& beside,
+                 const Takes& takes) const {
+    table_.add_usual(bodies, beside, takes);
   }
+  /// `flight` of such a ball, and when that starts.
+  [[nodiscard]] BallFlight usual_flight(BodyIndex i) const { return table_.usual_flight(i); }
+  [[nodiscard]] Instant start_of_usual(BodyIndex i) const { return table_.start_of_flight(i); }
   /// The ball that bounds body i, on its way; its radius is infinite if it is on no parabola, or
   /// the body is unbounded.
   [[nodiscard]] BallFlight flight(BodyIndex i) const {

@@ -228,35 +228,38 @@ void EventPredictor::survey(BodyIndex i, Instant known, BodyIndex except) {
 
 /// The same of those of `themselves_` that are balls like i; appends the others to `neighbours_`.
 void EventPredictor::survey_usual(BodyIndex i, Instant known, BodyIndex except) {
-  own_ = motions_.flight(i);
+  own_ = motions_.usual_flight(i);
   beside_.begin_alike(own_);
   if (usual_.size() < themselves_.size()) {
     usual_.resize(themselves_.size());
   }
   std::size_t count = 0;
   std::size_t others = 0;
-  for (const std::uint32_t j : themselves_) {
-    // Each is written, and some are written over: which ones, no processor would guess.
-    usual_[count] = j;
-    themselves_[others] = j;
-    motions_.look_up(j);
+  const auto takes = [&, found = themselves_.data(), usual = usual_.data()](std::size_t k) {
+    const std::uint32_t j = found[k];
+    usual[count] = j;
     const bool other = (j != i) & (j != except);
-    const bool is_usual = motions_.is_usual(j);
-    count += static_cast<std::size_t>(other & is_usual);
-    others += static_cast<std::size_t>(other & !is_usual);
-  }
-  for (std::size_t k = 0; k < others; ++k) {
-    neighbours_.push_back({themselves_[k]});
+    const bool taken = other & motions_.is_usual(j);
+    count += static_cast<std::size_t>(taken);
+    others += static_cast<std::size_t>(other);
+    return taken;
+  };
+  motions_.add_usual(themselves_, beside_, takes);
+  if (count != others) {
+    for (const std::uint32_t j : themselves_) {
+      if (j != i && j != except && !motions_.is_usual(j)) {
+        neighbours_.push_back({j});
+      }
+    }
   }
   if (count == 0) {
     return;
   }
-  motions_.add_usual({usual_.data(), count}, beside_);
   filter_beside();
   near_.clear();
   for (std::size_t k = 0; k < count; ++k) {
     if (clear_[k] < std::numeric_limits<double>::infinity()) {
-      const Instant later = std::max(own_.start, motions_.start_of(usual_[k]));
+      const Instant later = std::max(own_.start, motions_.start_of_usual(usual_[k]));
       near_.push_back({{usual_[k]}, later + clear_[k], true});
     }
   }
@@ -306,32 +309,35 @@ void EventPredictor::ask_near(BodyIndex i, Instant known) {
   }
 }
 
-/// `ask` of two usual balls of which nothing but their motions says when they meet: what that finds
-/// out beside is known.
+/// `ask` of two usual balls, the first of which is surveyed, of which nothing but their motions
+/// says when they meet: what that finds out beside is known.
 void EventPredictor::ask_usual(BodyIndex i, BodyIndex j, Instant known) {
   const Instant from = std::max(since_[i], since_[j]);
-  if (!graph_.empty()) {
+  if (ball_detector_ == nullptr || !graph_.empty()) {
     return ask(i, {j}, from, known);
   }
   const double duration = run_.epoch_end() - from;
   if (!(duration > 0.0)) {
     return;
   }
-  const auto [a, b] = run_.agenda.before(i, j) ? std::pair{i, j} : std::pair{j, i};
-  const auto toi =
-      run_.detector.ball_impact(motions_.flight(a), motions_.flight(b), {from, duration});
-  if (!toi) {
+  const BallFlight other = motions_.usual_flight(j);
+  const bool in_order = run_.agenda.before(i, j);
+  const auto meeting = ball_detector_->ball_meeting(in_order ? own_ : other,
+                                                    in_order ? other : own_, {from, duration});
+  if (!meeting) {
     return ask(i, {j}, from, known);
   }
   ++run_.cost.toi_queries;
-  run_.cost.toi_evaluations += toi->evaluations;
-  if (toi->status == ToiStatus::impact) {
-    const Instant t = from + toi->t_lo;
-    if (known < t) {
-      run_.agenda.meet(i, j, t, toi->t_hi - toi->t_lo);
-    }
-  } else if (toi->status != ToiStatus::separated) {
-    take_answer({a, b, from, duration, known, true, i}, *toi);
+  run_.cost.toi_evaluations += meeting->evaluations;
+  if (!meeting->meets) {
+    return;
+  }
+  const double bracket = meeting->t_hi - meeting->t_lo;
+  if (const Instant t = from + meeting->t_lo; known < t) {
+    run_.agenda.meet(i, j, t, bracket);
+  } else {
+    const auto [a, b] = in_order ? std::pair{i, j} : std::pair{j, i};
+    ask_on({a, b, from, duration, known, true, i}, t + bracket);
   }
 }
 
@@ -407,24 +413,22 @@ bool EventPredictor::keeps_meeting(BodyIndex i, BodyIndex with) const {
            std::holds_alternative<HalfSpace>(run_.model.shape(with))));
 }
 
-void EventPredictor::solids_near(BodyIndex i, std::vector<BodyIndex>& out) {
-  const auto add = [&](BodyIndex j) {
-    if (run_.model.interacts(i, j) && !run_.model.is_field(i) && !run_.model.is_field(j) &&
-        !grasps_.involve(i, j)) {
+void EventPredictor::solids_near(BodyIndex i, std::vector<Neighbour>& out) {
+  const auto add = [&](const Neighbour& j) {
+    if (run_.model.interacts(i, j.body) && !run_.model.is_field(i) &&
+        !run_.model.is_field(j.body) && !grasps_.involve(i, j.body)) {
       out.push_back(j);
     }
   };
   if (!neighbourhood_) {
-    std::for_each(partners_[i].begin(), partners_[i].end(), add);
+    for (const BodyIndex j : partners_[i]) {
+      add({j, {}});
+    }
     return;
   }
   neighbours_.clear();
   neighbourhood_->near(i, neighbours_);
-  for (const Neighbour& j : neighbours_) {
-    if (is_zero(j.image)) {
-      add(j.body);
-    }
-  }
+  std::for_each(neighbours_.begin(), neighbours_.end(), add);
 }
 
 bool EventPredictor::goes_alone(BodyIndex i) const {
@@ -448,7 +452,8 @@ void EventPredictor::predict_pair(BodyIndex i, BodyIndex j, const Image& n, Inst
   }
 }
 
-void EventPredictor::ask(BodyIndex i, const Neighbour& other, Instant from, Instant known) {
+void EventPredictor::ask(BodyIndex i, const Neighbour& other, Instant from, Instant known,
+                         int links) {
   // Queries go by name, so that their bits do not depend on who asks.
   const BodyIndex j = other.body;
   const bool in_order = run_.agenda.before(i, j);
@@ -473,8 +478,8 @@ void EventPredictor::ask(BodyIndex i, const Neighbour& other, Instant from, Inst
   if (!(duration > 0.0)) {
     return;
   }
-  const PairQuery query{
-      a, b, from, duration, known, keeps_meeting(i, j), i, in_order ? other.image : -other.image};
+  const Image image = in_order ? other.image : -other.image;
+  const PairQuery query{a, b, from, duration, known, keeps_meeting(i, j), i, image, links};
   if (leaving) {
     predict_parting(query, DueKind::clear_of_hand);
   } else if (!untied && (motions_.is_in_field(a, b) || motions_.is_in_field(b, a))) {
@@ -484,13 +489,17 @@ void EventPredictor::ask(BodyIndex i, const Neighbour& other, Instant from, Inst
   }
 }
 
-/// Puts what is due of a pair on the agenda, unless it has been dealt with.
+/// Puts what is due of a pair on the agenda. What is due before `known` has been dealt with: the
+/// pair is asked about what follows, as it was then. What it touched without an impact, it may
+/// meet.
 void EventPredictor::push(const PairQuery& of, double after, DueKind kind, double bracket,
                           bool decided) {
   const Instant t = of.from + after;
   if (!(of.known < t)) {
-    if (kind == DueKind::recheck) {  // the answer ends before `known`: ask about what follows
-      ask(of.a, {of.b, of.image}, t, of.known);
+    if (kind == DueKind::recheck) {
+      ask_on(of, t);
+    } else if (kind == DueKind::impact) {
+      ask_on(of, t + bracket);
     }
     return;
   }
@@ -499,6 +508,18 @@ void EventPredictor::push(const PairQuery& of, double after, DueKind kind, doubl
   } else {
     run_.agenda.push(t, kind, of.a, of.b, bracket, decided, of.image);
   }
+}
+
+/// Asks about what follows an answer: from where the event of that answer asked, so that the bits
+/// are the same. Where that gets nowhere it is left to an event of its own.
+void EventPredictor::ask_on(const PairQuery& of, Instant from) {
+  constexpr int most_links = 64;
+  if (of.from < from && of.links < most_links) {
+    const bool by_a = of.asker == of.a;
+    return ask(of.asker, {by_a ? of.b : of.a, by_a ? of.image : -of.image}, from, of.known,
+               of.links + 1);
+  }
+  run_.agenda.push(of.known, DueKind::recheck, of.a, of.b, 0.0, true, of.image);
 }
 
 TimeOfImpact EventPredictor::counted(const TimeOfImpact& toi) {
@@ -603,9 +624,12 @@ double EventPredictor::touching_gap(BodyIndex a, BodyIndex b) const {
   return 2.0 * ((asked > 0.0 ? asked : 1e-9 * extent) + roundoff + errors);
 }
 
-double EventPredictor::least_touching_gap(const PlainBall& a, const PlainBall& b) const {
+double EventPredictor::least_touching_gap(const PlainBall* a, const PlainBall* b) const {
+  const auto extent = [](const PlainBall* ball) {
+    return ball != nullptr ? 2.0 * ball->radius : std::numeric_limits<double>::infinity();
+  };
   const double asked = run_.options.toi_tolerance;
-  return 2.0 * (asked > 0.0 ? asked : 1e-9 * std::min(2.0 * a.radius, 2.0 * b.radius));
+  return 2.0 * (asked > 0.0 ? asked : 1e-9 * std::min(extent(a), extent(b)));
 }
 
 /// The answer is undecided and the two are far apart: the detector ran out of work. Skips the time

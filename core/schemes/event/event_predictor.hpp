@@ -53,15 +53,15 @@ class EventPredictor {
   /// Whether nothing holds body i where it is.
   [[nodiscard]] bool goes_alone(BodyIndex i) const;
 
-  /// Solids in its own box that body i could touch now, appended.
-  void solids_near(BodyIndex i, std::vector<BodyIndex>& out);
+  /// Solids that body i could touch now, appended: some of them as images.
+  void solids_near(BodyIndex i, std::vector<Neighbour>& out);
 
   /// Beyond this gap two bodies do not touch, m: twice what a detector may leave between them (its
   /// tolerance, the roundoff of the coordinates that their motions reach, their error radii). No
   /// impact law acts across more.
   [[nodiscard]] double touching_gap(BodyIndex a, BodyIndex b) const;
-  /// That of two plain balls is no less, wherever they are, m.
-  [[nodiscard]] double least_touching_gap(const PlainBall& a, const PlainBall& b) const;
+  /// That of two plain balls, or of one and a wall (null), is no less, wherever they are, m.
+  [[nodiscard]] double least_touching_gap(const PlainBall* a, const PlainBall* b) const;
 
   /// Body i is about to be predicted.
   void look_up(BodyIndex i) const {
@@ -90,6 +90,7 @@ class EventPredictor {
     bool kept = false;  ///< whether a meeting is kept as that of `asker`
     BodyIndex asker = 0;
     Image image{};  ///< of b, as a sees it
+    int links = 0;  ///< answers before this one, each asked about what follows the one before
   };
   /// Who may be near, and no meeting with whom is due before.
   struct Near {
@@ -115,7 +116,8 @@ class EventPredictor {
   void ask_usual(BodyIndex i, BodyIndex j, Instant known);
   [[nodiscard]] bool is_beyond(BodyIndex i, BodyIndex wall) const;
   [[nodiscard]] bool keeps_meeting(BodyIndex i, BodyIndex with) const;
-  void ask(BodyIndex i, const Neighbour& j, Instant from, Instant known);
+  void ask(BodyIndex i, const Neighbour& j, Instant from, Instant known, int links = 0);
+  void ask_on(const PairQuery& of, Instant from);
   void push(const PairQuery& of, double after, DueKind kind, double bracket = 0.0,
             bool decided = true);
   /// Whether b is seen as an image of it.

@@ -17,7 +17,7 @@ inline namespace core {
 /// What a person can do about bodies that stay in touch: the end of a stop's reason.
 inline constexpr std::string_view lasting_contact_advice =
     "event-driven keeps contact that lasts in three cases: loads are constant and nothing turns; "
-    "one body that does not turn lies on a driven face; up to 24 bodies (balls, "
+    "one body that does not turn lies on a driven face; bodies (balls, "
     "capsules, boxes, hulls) turn while they touch; "
     "allowed: bodies that start apart, a restitution of 1, another scheme (--scheme), or a run "
     "that ends before (--duration)";

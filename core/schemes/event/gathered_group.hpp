@@ -24,7 +24,7 @@ struct EventModes::Gathered {
   ContactGroup group;
   double remaining = 0.0;  ///< until the accumulation is over that ends in this, s
   std::string refusal;
-  std::string hangs;  ///< why it cannot go on without turning: some hang on joints
+  std::string hangs;  ///< why it cannot go on without turning: some hang together
   std::vector<GroupMechanism> mechanisms;
   std::optional<BodyIndex> driven;  ///< one of those that are
   std::optional<BodyIndex> varies;  ///< one of those that feel forces which are not constant

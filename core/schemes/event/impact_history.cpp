@@ -50,6 +50,12 @@ bool ImpactHistory::stalls(Instant t, double resolution) {
   return of.stalling > most_stalling;
 }
 
+void ImpactHistory::go_on() {
+  if (rare_ != nullptr) {
+    rare_->stalling = 0;
+  }
+}
+
 ImpactHistory::Rare& ImpactHistory::rare() {
   if (rare_ == nullptr) {
     rare_ = std::make_unique<Rare>();

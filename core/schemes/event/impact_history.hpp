@@ -47,6 +47,8 @@ class ImpactHistory {
   /// A look at t that changed nothing: true where more than 200 in a row came within `resolution`,
   /// s, of the one before, that is, where time stands still.
   [[nodiscard]] bool stalls(Instant t, double resolution);
+  /// What stalled goes on in another way: the next time is the first.
+  void go_on();
 
   void persist(Archive& archive);
 

@@ -64,12 +64,17 @@ class MotionTable {
   [[nodiscard]] BallFlight usual_flight(BodyIndex i) const { return of(throws_[i], usual_); }
   [[nodiscard]] Instant start_of_flight(BodyIndex i) const { return throws_[i].start; }
   [[nodiscard]] const Vector3& usual_acceleration() const { return usual_.acceleration; }
-  /// The flights of such bodies, beside one of such a body.
-  void add_usual(std::span<const std::uint32_t> bodies, FlightsBeside& beside) const {
-    beside.add_alike(bodies.size(),
-                     [bodies, throws = throws_.data()](std::size_t k) -> const Throw& {
-                       return throws[bodies[k]];
-                     });
+  /// The flights of those of these bodies that `takes(k)`, which are such, beside one of such a
+  /// body.
+  template <typename Takes>
+  void add_usual(std::span<const std::uint32_t> bodies, FlightsBeside& beside,
+                 const Takes& takes) const {
+    beside.add_alike(
+        bodies.size(),
+        [bodies, throws = throws_.data()](std::size_t k) -> const Throw& {
+          return throws[bodies[k]];
+        },
+        takes);
   }
   /// The flight of body i is about to be asked for.
   void look_up(BodyIndex i) const { prefetch(throws_[i]); }

@@ -11,6 +11,7 @@ struct EventModes::Turning {
   TurningGroup group;
   TurningMode mode;
   TurningStep step;
+  bool all = false;          ///< what is in touch is kept for the step, pressed or not
   std::vector<char> jammed;  ///< by touch: friction stopped it by an impulse; empty: none
   double driven = 0.0;       ///< work of what joints hang on, before that of the mode, J
 

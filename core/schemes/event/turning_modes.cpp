@@ -1,4 +1,5 @@
 // What `EventModes` does with groups whose bodies turn while they touch.
+#include "core/contacts/implicit_mode.hpp"
 #include "core/contacts/jam.hpp"
 #include "core/schemes/event/gathered_group.hpp"
 #include "core/schemes/event/mode_guards.hpp"
@@ -24,14 +25,24 @@ constexpr double rough = 1e8;
 /// Steps that are shorter than this part of a frame, so many in a row, get nowhere.
 constexpr double short_step = 1e-4;
 constexpr int most_short_steps = 1500;
-/// After so many of them, and for as many, slip that the loads make within one is none: its
-/// direction turns, and it stops, within what such a step cannot tell. What it then does is
-/// verified as ever.
+/// After so many of them steps are implicit: what slides turns its direction, or stops, within what
+/// such a step cannot tell.
 constexpr int few_short_steps = 50;
-/// A body that turns has so many steps in a frame at most.
+/// A body that turns has so many steps in a frame at most, and so many in which forces are those of
+/// an instant.
 constexpr int most_steps = 4000;
-/// So many free bodies of a group may turn: forces of more are found too slowly.
+constexpr int most_exact_steps = 500;
+/// Forces at an instant are looked for of so many free bodies that turn: of more they are found too
+/// slowly.
 constexpr std::ptrdiff_t most_bodies = 24;
+/// An implicit step takes this part of a frame at most, and so many follow each other before forces
+/// at an instant are looked for again: twice as many each time that there are none.
+constexpr double implicit_part = 1.0 / 16.0;
+constexpr int first_stretch = 16;
+constexpr int longest_stretch = 1024;
+constexpr int most_halvings = 30;
+/// What ends a step after less than this part of it strikes at once.
+constexpr double least_part = 1e-9;
 
 std::vector<BodyState> free_states(const TurningGroup& group) {
   std::vector<BodyState> states;
@@ -87,31 +98,20 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
     turning.mode.velocities = found.group.velocities;
     return turned(seeds) && !asked.pressed && !asked.unloaded && fly(found, turning, t, adopt);
   }
-  double fastest = 0.0;
-  for (std::size_t k = 0; k < found.bodies.size(); ++k) {
-    const Twist& v = found.states[k].twist;
-    fastest = std::max(fastest, v.linear.norm() + v.angular.norm() * found.group.radius[k]);
+  const double frame = run_.options.step > 0.0 ? run_.options.step : run_.mean_frame;
+  const double longest = std::min({frame, run_.epoch_end() - t, next_step(found)});
+  const bool steps_over = asked.step_over || goes_on_implicitly(found, t);
+  if (!steps_over) {
+    find_forces(found, turning, t);
   }
-  const double instant = short_steps(found) / few_short_steps % 2 != 0
-                             ? std::max(found.group.instant, short_step * run_.mean_frame)
-                             : found.group.instant;
-  const double still =
-      TurningForces(turning.group.start).load() * instant + 64.0 * epsilon * fastest;
-  turning.mode = turning_mode(turning.group.start, std::max(still, turning_rest(turning.group)));
-  if (!turning.mode.refusal.empty() && let_hop(turning, 64.0 * epsilon * fastest)) {
-    turning.mode = turning_mode(turning.group.start, std::max(still, turning_rest(turning.group)));
-  }
-  if (!turning.mode.refusal.empty()) {
-    let_jam(found, turning, t, still);
-  }
-  why_not_ = turning.mode.refusal;
-  if (!why_not_.empty()) {
+  if ((steps_over || !turning.mode.refusal.empty()) &&
+      !step_over(found, turning, t, asked.step_over)) {
     return false;
   }
   const auto& forces = turning.mode.forces.force;
   const bool pressed =
       std::any_of(forces.begin(), forces.end(), [](const Vector3& f) { return !f.isZero(0.0); });
-  if (turning.mode.flies || !pressed) {
+  if ((turning.mode.flies || !pressed) && !turning.all) {
     why_not_ = "nothing presses";
     if (!asked.may_part) {
       return false;
@@ -131,20 +131,21 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
   if (!completes(found, jump, asked, &turning)) {
     return false;
   }
-  const double frame = run_.options.step > 0.0 ? run_.options.step : run_.mean_frame;
-  if (short_steps(found) > most_short_steps) {
+  if (!turning.mode.implicit && short_steps(found) > most_short_steps) {
     why_not_ = "what begins to slide, or stops, turns its direction faster than steps can follow";
     return false;
   }
-  const double longest = std::min({frame, run_.epoch_end() - t, next_step(found)});
-  const std::unique_ptr<Stepper> stepper = stepper_(longest);
-  turning.step = turning_step(turning.group, turning.mode, *stepper, t, longest);
-  why_not_ = turning.step.refusal;
-  if (why_not_.empty() && !(turning.step.duration > 0.0)) {
-    why_not_ = "a corner of a body in touch is to strike at once";
-  }
-  if (!why_not_.empty()) {
-    return false;
+  if (!turning.mode.implicit) {
+    const std::unique_ptr<Stepper> stepper = stepper_(longest);
+    turning.step = turning_step(turning.group, turning.mode, *stepper, t, longest);
+    if (!(turning.step.duration > 0.0)) {
+      turning.mode.refusal = turning.step.refusal.empty()
+                                 ? "a corner of a body in touch is to strike at once"
+                                 : turning.step.refusal;
+      if (!step_over(found, turning, t, false) || turning.mode.flies) {
+        return false;
+      }
+    }
   }
   count_step(found, t);
   ++run_.cost.steps;
@@ -152,6 +153,114 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
   tell_jam(found, turning, t);
   carry_on(found, turning, t, adopt);
   return true;
+}
+
+/// Whether some of a group hang on joints.
+bool EventModes::has_joints(const Gathered& found) {
+  return std::any_of(found.mechanisms.begin(), found.mechanisms.end(),
+                     [](const GroupMechanism& m) { return m.joints != nullptr; });
+}
+
+/// Forces at this instant; why there are none is the mode's refusal.
+void EventModes::find_forces(const Gathered& found, Turning& turning, Instant t) {
+  double fastest = 0.0;
+  for (std::size_t k = 0; k < found.bodies.size(); ++k) {
+    const Twist& v = found.states[k].twist;
+    fastest = std::max(fastest, v.linear.norm() + v.angular.norm() * found.group.radius[k]);
+  }
+  const double roundoff = 64.0 * epsilon * fastest;
+  // On joints, short steps make no implicit ones: slip that the loads make within one is none.
+  const bool short_on_joints = has_joints(found) && short_steps(found) / few_short_steps % 2 != 0;
+  const double instant = short_on_joints
+                             ? std::max(found.group.instant, short_step * run_.mean_frame)
+                             : found.group.instant;
+  const double still = TurningForces(turning.group.start).load() * instant + roundoff;
+  const auto find = [&] {
+    turning.mode = turning_mode(turning.group.start, std::max(still, turning_rest(turning.group)));
+    return turning.mode.refusal.empty();
+  };
+  if (find()) {
+    return;
+  }
+  const TurningGroup all = turning.group;
+  if (let_hop(turning, roundoff) && find()) {
+    return;
+  }
+  let_jam(found, turning, t, still);
+  if (!turning.mode.refusal.empty()) {
+    turning.group = all;
+  }
+}
+
+/// Whether forces are not even looked for: there were none lately, or too many bodies turn, or what
+/// slides makes steps too short.
+bool EventModes::goes_on_implicitly(const Gathered& found, Instant t) const {
+  if (has_joints(found)) {
+    return false;
+  }
+  const double frame = std::floor(t.seconds / run_.mean_frame);
+  const auto free = std::count_if(found.bodies.begin(), found.bodies.end(),
+                                  [&](BodyIndex i) { return run_.model.is_free(i); });
+  return free > most_bodies || short_steps(found) >= few_short_steps ||
+         implicit_steps(found).first > 0 ||
+         std::any_of(found.bodies.begin(), found.bodies.end(), [&](BodyIndex i) {
+           return has_turned_[i].frame == frame && has_turned_[i].steps >= most_exact_steps;
+         });
+}
+
+/// Of the pairs of a group, the most: implicit steps that are left, and those made last.
+std::pair<int, int> EventModes::implicit_steps(const Gathered& found) const {
+  std::pair<int, int> most{0, 0};
+  for (const auto& [a, b] : found.pairs) {
+    if (const Patch* const patch = graph_.find(a, b)) {
+      most.first = std::max(most.first, patch->implicit_steps);
+      most.second = std::max(most.second, patch->stretch);
+    }
+  }
+  return most;
+}
+
+/// Steps over what forces at an instant are not known of: with forces that act all through a step,
+/// which is as short as it takes to keep gaps. False, and why not, where none is.
+bool EventModes::step_over(const Gathered& found, Turning& turning, Instant t,
+                           bool pressed_or_not) {
+  turning.all = pressed_or_not;
+  const std::string exactly = turning.mode.refusal;
+  std::vector<Vector3> warm;
+  for (const Touch& touch : turning.group.start.touches) {
+    const auto& [a, b] = found.pairs[touch.pair];
+    const Patch* const patch = graph_.find(a, b);
+    const std::size_t point = touch.point;
+    warm.push_back(patch != nullptr && point < patch->force.size() ? patch->force[point]
+                                                                   : Vector3(Vector3::Zero()));
+  }
+  const double frame = run_.options.step > 0.0 ? run_.options.step : run_.mean_frame;
+  const double before = implicit_steps(found).second > 0 ? next_step(found) : frame;
+  double h = std::min({implicit_part * frame, run_.epoch_end() - t, before});
+  bool halved = false;
+  for (int round = 0; round < most_halvings; ++round, h *= 0.5, halved = true) {
+    turning.mode = implicit_mode(turning.group.start, h, warm);
+    turning.mode.keeps_all = turning.all;
+    run_.cost.contact_solves += turning.mode.solves;
+    if (!turning.mode.refusal.empty()) {
+      break;
+    }
+    if (turning.mode.flies && !turning.all) {
+      return true;
+    }
+    const std::unique_ptr<Stepper> stepper = stepper_(h);
+    turning.step = turning_step(turning.group, turning.mode, *stepper, t, h);
+    turning.step.halved = turning.step.halved || halved;
+    const bool made = turning.step.refusal.empty() && turning.step.duration > least_part * h;
+    if (made && short_steps(found) <= most_short_steps) {
+      return true;
+    }
+  }
+  why_not_ = exactly.empty() ? turning.mode.refusal : exactly;
+  if (why_not_.empty()) {
+    why_not_ = "a corner of a body in touch is to strike at once";
+  }
+  return false;
 }
 
 /// Gathers what touches, with gaps that can be held. Where that brings one nearer to what passes
@@ -189,8 +298,8 @@ bool EventModes::has_turned(std::span<const BodyIndex> bodies) const {
 std::string EventModes::why_not_turn(const Gathered& found, Instant t) const {
   const auto free = std::count_if(found.bodies.begin(), found.bodies.end(),
                                   [&](BodyIndex i) { return run_.model.is_free(i); });
-  if (free > most_bodies) {
-    return fmt::format("more than {} bodies that touch each other turn", most_bodies);
+  if (free > most_bodies && has_joints(found)) {
+    return fmt::format("more than {} bodies on joints that touch each other turn", most_bodies);
   }
   const double frame = std::floor(t.seconds / run_.mean_frame);
   for (const BodyIndex i : found.bodies) {
@@ -228,7 +337,7 @@ bool EventModes::turned(std::span<const BodyIndex> bodies) {
 }
 
 /// How many steps of a group in a row got nowhere.
-int EventModes::short_steps(const Gathered& found) {
+int EventModes::short_steps(const Gathered& found) const {
   int most = 0;
   for (const auto& [a, b] : found.pairs) {
     const Patch* const patch = graph_.find(a, b);
@@ -267,7 +376,7 @@ std::string EventModes::add_touches(Gathered& found, Instant t, Turning& turning
     group.inertia.push_back(free ? run_.model.inertia(i) : BodyInertia{});
     group.constant_force.push_back(free ? motions_.steady_force(i) : Vector3(Vector3::Zero()));
     const Island* const island = free ? &run_.model.islands()[run_.model.island_of(i)] : nullptr;
-    group.forces.push_back(island != nullptr && island->joints == nullptr
+    group.forces.push_back(island != nullptr && !hangs_together(*island)
                                ? island->forces
                                : std::vector<const Force*>());
   }
@@ -275,9 +384,6 @@ std::string EventModes::add_touches(Gathered& found, Instant t, Turning& turning
     const auto [a, b] = found.pairs[p];
     const GroupPatch& patch = found.group.patches[p];
     const ContactManifold& m = patch.manifold;
-    if (!patch.drift.isZero(0.0)) {
-      return "a body turns on a belt";
-    }
     auto corners_a = corners_of(run_.model.shape(a));
     auto corners_b = corners_of(run_.model.shape(b));
     const Pose& at_a = found.states[patch.a].pose;
@@ -314,6 +420,11 @@ std::string EventModes::add_touches(Gathered& found, Instant t, Turning& turning
       touch->rough = std::isinf(patch.friction);
       touch->rest_speed = patch.rest_speed;
       touch->pair = p;
+      touch->point = k;
+      touch->belt = patch.drift;
+      if (!has_belts_on_faces(*touch, a, b)) {
+        return "a body turns at an edge of a belt";
+      }
       const double gap = look_at(*touch, found.states[patch.a], found.states[patch.b]).gap;
       touch->gap = gap;
       group.start.touches.push_back(*touch);
@@ -327,6 +438,16 @@ std::string EventModes::add_touches(Gathered& found, Instant t, Turning& turning
     group.start = std::move(start);
   }
   return {};
+}
+
+/// Whether belts of a touch are on faces of what never moves: their velocity is then along the
+/// surface, and constant.
+bool EventModes::has_belts_on_faces(const Touch& touch, BodyIndex a, BodyIndex b) const {
+  const auto fits = [&](BodyIndex i, const TouchFeature& feature) {
+    return belt(i, touch.normal).isZero(0.0) ||
+           (run_.model.mobility(i) == Mobility::fixed && feature.kind == TouchFeature::Kind::plane);
+  };
+  return touch.belt.isZero(0.0) || (fits(a, touch.on_a) && fits(b, touch.on_b));
 }
 
 /// Where what is touched ends; why that is not known.
@@ -465,7 +586,7 @@ void EventModes::raise(Gathered& found, Turning& turning, Instant t) {
 /// Whether bodies whose gaps were made larger stay clear of all others: those of the group, too,
 /// that they do not rest on.
 bool EventModes::has_room(std::span<const BodyState> before, const Gathered& found, Instant t) {
-  std::vector<BodyIndex> near;
+  std::vector<Neighbour> near;
   for (std::size_t k = 0; k < found.bodies.size(); ++k) {
     const BodyIndex i = found.bodies[k];
     const Pose& was = before[k].pose;
@@ -476,11 +597,15 @@ bool EventModes::has_room(std::span<const BodyState> before, const Gathered& fou
     }
     near.clear();
     predictor_.solids_near(i, near);
-    for (const BodyIndex j : near) {
+    for (const auto& [j, image] : near) {
       const std::size_t place = found.place(j);
       const bool here = place < found.bodies.size();
-      const Pose other_was = here ? before[place].pose : motions_.at(j, t).pose;
-      const Pose other_is = here ? found.states[place].pose : other_was;
+      Pose other_was = here ? before[place].pose : motions_.at(j, t).pose;
+      Pose other_is = here ? found.states[place].pose : other_was;
+      if (const auto& box = run_.model.scene().periodic) {
+        other_was.position += box->shift(image);
+        other_is.position += box->shift(image);
+      }
       const Shape& own = run_.model.shape(i);
       const Shape& other = run_.model.shape(j);
       const double gap = run_.detector.overlap(own, is, other, other_is).gap;
@@ -537,6 +662,7 @@ std::vector<double> EventModes::hops(const Gathered& found) {
 bool EventModes::fly(const Gathered& found, const Turning& turning, Instant t, const Adopt& adopt) {
   FlatMode mode;
   mode.turns = true;
+  mode.grade = turning.mode.implicit ? Grade::stepped : Grade::sampled;
   mode.velocities = turning.mode.velocities;
   mode.driven = turning.driven + turning.mode.driven;
   mode.accelerations = found.group.loads;
@@ -550,16 +676,25 @@ bool EventModes::fly(const Gathered& found, const Turning& turning, Instant t, c
 
 /// What gaps that were made larger did to the energy.
 void EventModes::book_lift(const Gathered& found, Instant t) {
-  for (std::size_t k = 0; k < found.bodies.size(); ++k) {
-    const BodyIndex i = found.bodies[k];
-    if (run_.model.is_free(i)) {
-      motions_.book(i, t);
-      const BodyState& after = found.states[k];
+  for (const BodyIndex first : found.bodies) {
+    const Island* const island =
+        run_.model.is_free(first) ? &run_.model.islands()[run_.model.island_of(first)] : nullptr;
+    if (island == nullptr || island->bodies.front() != first) {
+      continue;
+    }
+    motions_.book(first, t);
+    std::vector<BodyState> before;
+    std::vector<BodyState> after;
+    for (const BodyIndex i : island->bodies) {
+      after.push_back(found.states[found.place(i)]);
       // What it was is asked of its motion: `now` may have been drawn since it was brought.
-      BodyState before = after;
-      before.pose = motions_.at(i, t).pose;
-      run_.account.moved(i, t, before, after);
-      run_.ledger.add(EnergyLine::position_correction, run_.account.gained(i, before, after));
+      before.push_back(after.back());
+      before.back().pose = motions_.at(i, t).pose;
+    }
+    run_.account.moved(*island, t, before, after);
+    for (std::size_t k = 0; k < before.size(); ++k) {
+      run_.ledger.add(EnergyLine::position_correction,
+                      run_.account.gained(island->bodies[k], before[k], after[k]));
     }
   }
 }
@@ -570,6 +705,7 @@ void EventModes::carry_on(const Gathered& found, const Turning& turning, Instant
   const std::size_t n = found.pairs.size();
   FlatMode mode;
   mode.turns = true;
+  mode.grade = turning.mode.implicit ? Grade::stepped : Grade::sampled;
   mode.velocities = turning.mode.velocities;
   mode.driven = turning.driven + turning.mode.driven;
   mode.accelerations = turning.mode.forces.accelerations;
@@ -582,11 +718,11 @@ void EventModes::carry_on(const Gathered& found, const Turning& turning, Instant
     const FrictionChoice& c = turning.mode.choices[k];
     const Touch& touch = turning.group.start.touches[k];
     using Does = FrictionChoice::Does;
+    const std::size_t p = touch.pair;
+    mode.kept[p] = c.does != Does::opens || turning.all ? 1 : mode.kept[p];
     if (c.does == Does::opens) {
       continue;
     }
-    const std::size_t p = touch.pair;
-    mode.kept[p] = 1;
     mode.force[p] += turning.mode.forces.force[k];
     mode.pressing[p] += found.group.patches[p].manifold.normal.dot(turning.mode.forces.force[k]);
     if (touch.friction > 0.0) {
@@ -596,13 +732,19 @@ void EventModes::carry_on(const Gathered& found, const Turning& turning, Instant
       mode.slip[p] = std::max(mode.slip[p], now);
     }
   }
+  const std::pair<int, int> left = implicit_steps(found);
   book_lift(found, t);
   commit(found, mode, t, adopt, nullptr, &turning);
+  if (turning.mode.implicit) {
+    keep_forces(found, turning);
+  }
   for (const auto& [a, b] : found.pairs) {
     if (Patch* const patch = graph_.find(a, b)) {
       const double tried = turning.step.stepped;
-      patch->short_steps = tried < short_step * run_.mean_frame ? patch->short_steps + 1 : 0;
+      const bool is_short = tried < short_step * run_.mean_frame;
+      patch->short_steps = is_short ? patch->short_steps + 1 : 0;
       patch->step = turning.step.halved ? tried : std::max(patch->step, 2.0 * tried);
+      count_implicit(turning, left, is_short, *patch);
     }
   }
   const Instant end = t + turning.step.duration;
@@ -615,6 +757,38 @@ void EventModes::carry_on(const Gathered& found, const Turning& turning, Instant
     run_.agenda.push(end, DueKind::impact, a, b, 0.0, true);
   }
   end_together(found, mode, end, strikes ? &found.pairs[turning.step.pair] : nullptr);
+}
+
+/// How a pair goes on stepping over what forces are not known of: a stretch of such steps begins,
+/// or goes on; `left` of it there were.
+void EventModes::count_implicit(const Turning& turning, const std::pair<int, int>& left,
+                                bool is_short, Patch& patch) {
+  if (!turning.mode.implicit) {
+    patch.stretch = is_short ? left.second : 0;
+    patch.implicit_steps = 0;
+    return;
+  }
+  const bool begins = left.first == 0;
+  patch.stretch = !begins           ? left.second
+                  : left.second > 0 ? std::min(2 * left.second, longest_stretch)
+                                    : first_stretch;
+  patch.implicit_steps = begins ? patch.stretch - 1 : left.first - 1;
+}
+
+/// The next implicit step begins its search with the forces of this one.
+void EventModes::keep_forces(const Gathered& found, const Turning& turning) {
+  for (std::size_t p = 0; p < found.pairs.size(); ++p) {
+    if (Patch* const patch = graph_.find(found.pairs[p].first, found.pairs[p].second)) {
+      patch->force.assign(found.group.patches[p].manifold.size, Vector3::Zero());
+    }
+  }
+  for (std::size_t k = 0; k < turning.group.start.touches.size(); ++k) {
+    const Touch& touch = turning.group.start.touches[k];
+    Patch* const patch = graph_.find(found.pairs[touch.pair].first, found.pairs[touch.pair].second);
+    if (patch != nullptr && touch.point < patch->force.size()) {
+      patch->force[touch.point] = turning.mode.forces.force[k];
+    }
+  }
 }
 
 /// What hangs together is looked at again at `end`. Where a strike ends the step that comes first,

@@ -28,24 +28,27 @@ WorkBudget::WorkBudget(std::int64_t most_in_frame, std::size_t bodies, double fr
 }
 
 WorkBudget::Spent WorkBudget::spend(const DueEvent& event) {
-  latest_[taken_++ % remembered] = {event.a, event.b};
-  if (event.time - since_ > epsilon * std::max(event.time.seconds, frame_)) {
-    since_ = event.time;
-    at_once_ = 0;
+  last_ = event.kind == DueKind::crossing ? 1 : 0;
+  Count& count = counts_[last_];
+  count.latest[count.taken++ % remembered] = {event.a, event.b};
+  if (event.time - count.since > epsilon * std::max(event.time.seconds, frame_)) {
+    count.since = event.time;
+    count.at_once = 0;
   }
-  ++at_once_;
-  ++in_frame_;
-  if (at_once_ > most_at_once_) {
+  ++count.at_once;
+  ++count.in_frame;
+  if (count.at_once > most_at_once_) {
     return Spent::instant;
   }
-  return in_frame_ > most_in_frame_ ? Spent::frame : Spent::nothing;
+  return count.in_frame > most_in_frame_ ? Spent::frame : Spent::nothing;
 }
 
 std::vector<WorkBudget::Share> WorkBudget::busiest() const {
-  const std::size_t n = std::min<std::uint64_t>(taken_, remembered);
+  const Count& last = counts_[last_];
+  const std::size_t n = std::min<std::uint64_t>(last.taken, remembered);
   std::map<std::pair<BodyIndex, BodyIndex>, int> counts;
   for (std::size_t k = 0; k < n; ++k) {
-    ++counts[std::minmax(latest_[k].a, latest_[k].b)];
+    ++counts[std::minmax(last.latest[k].a, last.latest[k].b)];
   }
   std::vector<Share> shares;
   for (const auto& [pair, count] : counts) {
@@ -61,7 +64,9 @@ std::vector<WorkBudget::Share> WorkBudget::busiest() const {
 
 void WorkBudget::Pair::persist(Archive& archive) { archive(a, b); }
 
-void WorkBudget::persist(Archive& archive) { archive(at_once_, since_, latest_, taken_); }
+void WorkBudget::Count::persist(Archive& archive) { archive(at_once, since, latest, taken); }
+
+void WorkBudget::persist(Archive& archive) { archive(counts_); }
 
 }  // namespace core
 }  // namespace kairos

@@ -17,6 +17,8 @@ inline namespace core {
 ///   (eps of the time, or of a frame where that is more): 10,000, or 1000 a body where that is
 ///   more. Balls that touch hand an impact on in one instant; each of them a few times.
 /// - in one *frame*: `most_in_frame`.
+/// Crossings have the same bounds, and are counted by themselves: how many there are depends on how
+/// neighbours are found, and where a run stops must not.
 class WorkBudget {
  public:
   enum class Spent { nothing, instant, frame };
@@ -25,7 +27,11 @@ class WorkBudget {
   /// how long frames last on average, s.
   WorkBudget(std::int64_t most_in_frame, std::size_t bodies, double frame);
 
-  void begin_frame() { in_frame_ = 0; }
+  void begin_frame() {
+    for (Count& count : counts_) {
+      count.in_frame = 0;
+    }
+  }
   /// Counts an event; tells which bound it exceeds.
   [[nodiscard]] Spent spend(const DueEvent& event);
 
@@ -38,8 +44,8 @@ class WorkBudget {
     BodyIndex b = 0;
     double share = 0.0;
   };
-  /// The pairs of the latest events, the busiest first; pairs with less than a tenth are left
-  /// out.
+  /// The pairs of the latest events (crossings, if there were too many of these), the busiest
+  /// first; pairs with less than a tenth are left out.
   [[nodiscard]] std::vector<Share> busiest() const;
 
   void persist(Archive& archive);
@@ -55,11 +61,16 @@ class WorkBudget {
   std::int64_t most_in_frame_;
   std::int64_t most_at_once_;
   double frame_;  ///< s
-  std::int64_t in_frame_ = 0;
-  std::int64_t at_once_ = 0;
-  Instant since_;                          ///< the instant that lasts
-  std::array<Pair, remembered> latest_{};  ///< a ring
-  std::uint64_t taken_ = 0;
+  struct Count {
+    std::int64_t in_frame = 0;
+    std::int64_t at_once = 0;
+    Instant since;                          ///< the instant that lasts
+    std::array<Pair, remembered> latest{};  ///< a ring
+    std::uint64_t taken = 0;
+    void persist(Archive& archive);
+  };
+  std::array<Count, 2> counts_{};  ///< of crossings second
+  std::size_t last_ = 0;           ///< of which the last one was
 };
 
 }  // namespace core

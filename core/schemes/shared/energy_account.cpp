@@ -264,12 +264,14 @@ void EnergyAccount::struck(const PlainBall& ball, const BodyState& before, const
   ledger_.exchange(renewed(ball.mass, before, after));
 }
 
-void EnergyAccount::moved(BodyIndex i, Instant t, const BodyState& from, const BodyState& to) {
-  moved(i, to.pose.position - from.pose.position);
-  const Island& island = model_.islands()[model_.island_of(i)];
+void EnergyAccount::moved(const Island& island, Instant t, std::span<const BodyState> from,
+                          std::span<const BodyState> to) {
+  for (std::size_t k = 0; k < island.bodies.size(); ++k) {
+    moved(island.bodies[k], to[k].pose.position - from[k].pose.position);
+  }
   if (!island.forces.empty()) {
     ledger_.add(EnergyLine::position_correction,
-                potential_of(island, t, {&to, 1}) - potential_of(island, t, {&from, 1}));
+                potential_of(island, t, to) - potential_of(island, t, from));
   }
 }
 

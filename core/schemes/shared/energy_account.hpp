@@ -99,8 +99,9 @@ class EnergyAccount {
   void moved(BodyIndex i, const Vector3& displacement) {
     ledger_.add(EnergyLine::position_correction, -model_.gravity_force(i).dot(displacement));
   }
-  /// The same, against the forces of its island, of which it is the only body, too.
-  void moved(BodyIndex i, Instant t, const BodyState& from, const BodyState& to);
+  /// The same of all bodies of an island, against its forces, too.
+  void moved(const Island& island, Instant t, std::span<const BodyState> from,
+             std::span<const BodyState> to);
 
  private:
   /// Counts what gravity and the new velocities changed into each other; returns the work, J.

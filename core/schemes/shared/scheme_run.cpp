@@ -53,9 +53,13 @@ ImpactEnergy SchemeRun::exchange(Event& event, BodyState& a, BodyState& b, Vecto
   return energy;
 }
 
-void SchemeRun::struck(const Event& event, const PlainBall& a, const PlainBall& b) {
-  account.struck(a, event.before_a, event.after_a);
-  account.struck(b, event.before_b, event.after_b);
+void SchemeRun::struck(const Event& event, const PlainBall* a, const PlainBall* b) {
+  if (a != nullptr) {
+    account.struck(*a, event.before_a, event.after_a);
+  }
+  if (b != nullptr) {
+    account.struck(*b, event.before_b, event.after_b);
+  }
   ++cost.impacts;
   note(event);
 }

@@ -35,8 +35,9 @@ class SchemeRun {
   /// caller knows on which lines they belong. `flat`: the impact turns spheres only.
   ImpactEnergy exchange(Event& event, BodyState& a, BodyState& b, Vector3& force_a,
                         Vector3& force_b, bool flat = false);
-  /// Two plain balls have struck each other, as the event says, which is counted and told.
-  void struck(const Event& event, const PlainBall& a, const PlainBall& b);
+  /// Two plain balls, or one and what is fixed (null), have struck each other, as the event says,
+  /// which is counted and told.
+  void struck(const Event& event, const PlainBall* a, const PlainBall* b);
   /// Inertia of body i in an impact that turns spheres only.
   [[nodiscard]] BodyInertia flat_inertia(BodyIndex i) const;
   /// Offset from where a body is computed to where it is recorded, m: in a periodic box it is

@@ -1,0 +1,99 @@
+#include "core/contacts/contact_sweeps.hpp"
+
+#include "core/contacts/coulomb_cone.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+constexpr int most_sweeps = 4000;
+/// After so many sweeps impulses change by half of what they would alone: what goes round in a
+/// circle comes to rest. They stay within their cones, which are convex.
+constexpr int damped_from = 1000;
+
+}  // namespace
+
+ContactSweeps::ContactSweeps(std::span<const GroupBody> bodies,
+                             std::span<const SweptTouch> touches) {
+  for (const SweptTouch& touch : touches) {
+    Block out;
+    out.a = touch.a;
+    out.b = touch.b;
+    out.friction = touch.friction;
+    const Vector3& n = touch.normal;
+    const Vector3 t = n.unitOrthogonal();
+    out.axes << n.transpose(), t.transpose(), n.cross(t).transpose();
+    const auto side = [&](std::size_t i, const Vector3& point, double sign, Matrix36& of,
+                          Matrix63& to) {
+      for (int r = 0; r < 3; ++r) {
+        const Vector3 d = sign * out.axes.row(r);
+        const Vector3 moment = (point - bodies[i].position).cross(d);
+        of.row(r) << d.transpose(), moment.transpose();
+        to.col(r) << bodies[i].inverse_mass * d, bodies[i].inverse_inertia * moment;
+      }
+    };
+    side(touch.a, touch.point_a, -1.0, out.of_a, out.to_a);
+    side(touch.b, touch.point_b, 1.0, out.of_b, out.to_b);
+    out.W = out.of_a * out.to_a + out.of_b * out.to_b;
+    blocks_.push_back(out);
+  }
+}
+
+ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
+                                          std::span<const Vector3> rates,
+                                          std::span<const Vector3> begin, double settled,
+                                          bool rubs) const {
+  Swept swept{std::vector<Vector3>(blocks_.size(), Vector3::Zero()), std::move(velocities)};
+  std::vector<Vector3> along(blocks_.size(), Vector3::Zero());
+  for (std::size_t k = 0; k < blocks_.size() && !begin.empty(); ++k) {
+    along[k] = blocks_[k].axes * begin[k];
+    push_along(blocks_[k], along[k], swept.velocities);
+  }
+  for (int round = 0; round < most_sweeps; ++round) {
+    swept.changed = 0.0;
+    swept.solves += static_cast<int>(blocks_.size());
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+      const Block& block = blocks_[k];
+      const Vector3 u = rate(k, swept.velocities) + (rates.empty() ? Vector3::Zero() : rates[k]);
+      const Vector3 alone =
+          coulomb_impulse(block.W, u - block.W * along[k], rubs ? block.friction : 0.0);
+      const Vector3 more = (round < damped_from ? 1.0 : 0.5) * (alone - along[k]);
+      if (more.isZero(0.0)) {
+        continue;
+      }
+      push_along(block, more, swept.velocities);
+      swept.changed = std::max(swept.changed, (block.W * more).norm());
+      along[k] += more;
+    }
+    if (swept.changed <= settled) {
+      break;
+    }
+  }
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    swept.impulse[k] = blocks_[k].axes.transpose() * along[k];
+  }
+  return swept;
+}
+
+Vector3 ContactSweeps::rate(std::size_t touch, const std::vector<Vector6>& v) const {
+  const Block& block = blocks_[touch];
+  return block.of_a * v[block.a] + block.of_b * v[block.b];
+}
+
+void ContactSweeps::push(std::size_t touch, const Vector3& impulse,
+                         std::vector<Vector6>& velocities) const {
+  push_along(blocks_[touch], blocks_[touch].axes * impulse, velocities);
+}
+
+void ContactSweeps::push_along(const Block& block, const Vector3& impulse,
+                               std::vector<Vector6>& v) {
+  v[block.a] += block.to_a * impulse;
+  v[block.b] += block.to_b * impulse;
+}
+
+}  // namespace core
+}  // namespace kairos

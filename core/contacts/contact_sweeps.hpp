@@ -1,0 +1,71 @@
+#pragma once
+
+#include "core/contacts/contact_system.hpp"
+
+#include <Eigen/Core>
+
+#include <span>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+
+/// Where two bodies touch, as impulses see it.
+struct SweptTouch {
+  std::size_t a = 0;  ///< places among the bodies
+  std::size_t b = 0;
+  Vector3 normal = Vector3::Zero();  ///< unit, from a to b, world frame
+  Vector3 point_a = Vector3::Zero();
+  Vector3 point_b = Vector3::Zero();
+  double friction = 0.0;  ///< Coulomb's; infinite: rough
+};
+
+/// Impulses at all touches at once that push and never pull, within the cones of friction, after
+/// which nothing approaches and what is pressed does not part: touch by touch, all others as they
+/// are, again and again [Moreau1988, Jourdan1998].
+class ContactSweeps {
+ public:
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+  ContactSweeps(std::span<const GroupBody> bodies, std::span<const SweptTouch> touches);
+
+  struct Swept {
+    std::vector<Vector3> impulse;     ///< by touch, on b, N s
+    std::vector<Vector6> velocities;  ///< by body: linear and angular, m/s and rad/s
+    double changed = 0.0;             ///< by the last sweep, m/s
+    int solves = 0;                   ///< of one touch each
+  };
+  /// Sweeps until one changes no velocity by more than `settled`, m/s, or there were very many.
+  /// @param velocities  of the bodies without impulses
+  /// @param rates  what is added to the rates, by touch: along the normal and two tangents that
+  ///               `axes` tells, m/s; empty: nothing
+  /// @param begin  impulses to begin with, by touch, N s; empty: none
+  [[nodiscard]] Swept sweep(std::vector<Vector6> velocities, std::span<const Vector3> rates,
+                            std::span<const Vector3> begin, double settled, bool rubs) const;
+
+  /// Rows: normal and tangents of a touch.
+  [[nodiscard]] const Eigen::Matrix3d& axes(std::size_t touch) const { return blocks_[touch].axes; }
+  /// Along these: velocity of b against a.
+  [[nodiscard]] Vector3 rate(std::size_t touch, const std::vector<Vector6>& velocities) const;
+  /// Adds what an impulse (or a force) at a touch does to velocities (or accelerations).
+  void push(std::size_t touch, const Vector3& impulse, std::vector<Vector6>& velocities) const;
+
+ private:
+  using Matrix36 = Eigen::Matrix<double, 3, 6>;
+  using Matrix63 = Eigen::Matrix<double, 6, 3>;
+  struct Block {
+    std::size_t a = 0;
+    std::size_t b = 0;
+    Eigen::Matrix3d axes;
+    Matrix36 of_a, of_b;  ///< J
+    Matrix63 to_a, to_b;  ///< M^-1 J^T
+    Matrix3 W;
+    double friction = 0.0;
+  };
+  static void push_along(const Block& block, const Vector3& impulse, std::vector<Vector6>& v);
+
+  std::vector<Block> blocks_;
+};
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,126 @@
+#include "core/contacts/implicit_mode.hpp"
+
+#include "core/contacts/contact_sweeps.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+using Does = FrictionChoice::Does;
+using Vector6 = ContactSweeps::Vector6;
+
+/// Sweeps have settled that change velocities by less than this part of what the loads do in the
+/// step, and of the fastest. What is left along the normals is projected out.
+constexpr double settled = 1e-10;
+/// What has not come so far is refused. It is of the order of what the step itself is off.
+constexpr double accepted = 1e-3;
+/// What parts slower than this, in the same units, is held, and what slides slower sticks.
+constexpr double held = 1e-7;
+
+/// With nothing left along the normals of what is held.
+void hold_normals(const TurningState& state, TurningMode& mode) {
+  TurningState from = state;
+  std::vector<TouchNow> now;
+  for (std::size_t i = 0; i < from.states.size(); ++i) {
+    from.states[i].twist = mode.velocities[i];
+  }
+  for (const Touch& touch : from.touches) {
+    now.push_back(look_at(touch, from.states[touch.a], from.states[touch.b]));
+  }
+  std::vector<FrictionChoice> choices = mode.choices;
+  for (FrictionChoice& choice : choices) {
+    choice.does = choice.does == Does::opens ? Does::opens : Does::slides;
+  }
+  mode.velocities = held_velocities(from, now, choices).of;
+}
+
+/// What a touch does that took this impulse and has these rates at the end of the step, along its
+/// normal and two tangents, m/s; what is slower than `least` is at rest. Among redundant touches
+/// one may be at the edge of its cone and not slide.
+FrictionChoice choice_of(const Touch& touch, const Vector3& normal, const Vector3& impulse,
+                         const Vector3& rates, double least) {
+  const double pressed = normal.dot(impulse);
+  if (!(pressed > 0.0)) {
+    return {rates.x() <= least ? Does::slides : Does::opens, Vector3::Zero()};
+  }
+  if (touch.friction > 0.0 && (touch.rough || rates.tail<2>().norm() <= least)) {
+    return {Does::sticks, Vector3::Zero()};
+  }
+  const Vector3 along = impulse - pressed * normal;
+  return {Does::slides, along.isZero(0.0) ? along : Vector3(-along.normalized())};
+}
+
+}  // namespace
+
+TurningMode implicit_mode(const TurningState& state, double h, std::span<const Vector3> warm) {
+  TurningMode mode;
+  mode.implicit = true;
+  if (state.joints != nullptr) {
+    mode.refusal = "what hangs on joints is not stepped over";
+    return mode;
+  }
+  const TurningForces forces(state);
+  std::vector<SweptTouch> touches;
+  std::vector<Vector3> begin;
+  for (std::size_t k = 0; k < state.touches.size(); ++k) {
+    const Touch& touch = state.touches[k];
+    const TouchNow& now = forces.now()[k];
+    touches.push_back({touch.a, touch.b, now.normal, now.point_a, now.point_b,
+                       touch.rough ? std::numeric_limits<double>::infinity() : touch.friction});
+    begin.push_back(k < warm.size() ? Vector3(h * warm[k]) : Vector3(Vector3::Zero()));
+  }
+  const ContactSweeps sweeps(state.bodies, touches);
+  std::vector<Vector6> velocities;
+  double fastest = 0.0;
+  for (std::size_t i = 0; i < state.bodies.size(); ++i) {
+    const Twist& v = state.states[i].twist;
+    velocities.push_back((Vector6() << v.linear, v.angular).finished());
+    fastest = std::max(fastest, v.linear.norm() + v.angular.norm() * state.radius[i]);
+  }
+  // Nothing approaches at the start.
+  velocities = sweeps.sweep(std::move(velocities), {}, {}, settled * fastest, false).velocities;
+  for (std::size_t i = 0; i < velocities.size(); ++i) {
+    mode.velocities.push_back({velocities[i].head<3>(), velocities[i].tail<3>()});
+    velocities[i].head<3>() += h * state.loads[i].linear;
+    velocities[i].tail<3>() += h * state.loads[i].angular;
+  }
+  std::vector<Vector3> rates;
+  for (std::size_t k = 0; k < touches.size(); ++k) {
+    rates.emplace_back(h * (sweeps.axes(k) * forces.now()[k].bias));
+    rates.back().x() = h * forces.now()[k].normal_bias;
+    if (!state.touches[k].belt.isZero(0.0)) {
+      rates.back().tail<2>() += (sweeps.axes(k) * state.touches[k].belt).tail<2>();
+    }
+  }
+  const double scale =
+      forces.load() * h + fastest * std::numeric_limits<double>::epsilon() / settled;
+  const auto swept = sweeps.sweep(std::move(velocities), rates, begin, settled * scale, true);
+  mode.solves = swept.solves;
+  if (!(swept.changed <= accepted * scale)) {
+    mode.refusal = "impulses of contacts were looked for touch by touch, and did not settle";
+    return mode;
+  }
+  mode.flies = true;
+  std::vector<Vector6> accelerations;
+  for (const Twist& load : state.loads) {
+    accelerations.push_back((Vector6() << load.linear, load.angular).finished());
+  }
+  for (std::size_t k = 0; k < touches.size(); ++k) {
+    mode.choices.push_back(choice_of(state.touches[k], touches[k].normal, swept.impulse[k],
+                                     sweeps.rate(k, swept.velocities) + rates[k], held * scale));
+    mode.flies = mode.flies && mode.choices.back().does == Does::opens;
+    mode.forces.force.emplace_back(swept.impulse[k] / h);
+    sweeps.push(k, mode.forces.force.back(), accelerations);
+  }
+  for (const Vector6& a : accelerations) {
+    mode.forces.accelerations.push_back({a.head<3>(), a.tail<3>()});
+  }
+  hold_normals(state, mode);
+  return mode;
+}
+
+}  // namespace core
+}  // namespace kairos

@@ -1,0 +1,156 @@
+// `EventContacts` where impacts have no end that contact could begin in, or are handed on without
+// one: what they come to.
+#include "core/contacts/contact_sweeps.hpp"
+#include "core/schemes/event/event_contacts.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+using Vector6 = ContactSweeps::Vector6;
+
+/// Of the fastest: sweeps that change less have settled; those that change more have not.
+constexpr double settled = 1e-13;
+constexpr double accepted = 1e-8;
+/// What was pushed apart and comes together again and again gets nowhere: so often in a frame.
+constexpr int most_pushes = 64;
+
+Vector6 stacked(const Twist& v) { return (Vector6() << v.linear, v.angular).finished(); }
+
+/// The touches of a group: where its rows are, with the friction of their pairs.
+std::vector<SweptTouch> touches_of(const EventModes::GroupImpact& impact, const Model& model) {
+  std::vector<SweptTouch> touches;
+  for (std::size_t r = 0; r < impact.system.rows.size(); ++r) {
+    const ContactRow& row = impact.system.rows[r];
+    const auto& [a, b] = impact.pairs[impact.pair_of_row[r]];
+    touches.push_back({row.a, row.b, row.direction,
+                       impact.system.bodies[row.a].position + row.arm_a,
+                       impact.system.bodies[row.b].position + row.arm_b, model.friction(a, b)});
+  }
+  return touches;
+}
+
+}  // namespace
+
+/// Impacts that are without end between all that touches the seeds, whose states are at `now`, end
+/// in what contacts can do by pushing at once: nothing approaches any more, impulses are within the
+/// cones of friction, and what nobody presses parts as it will [Moreau1988]. How the last of the
+/// impacts would have divided what is left is not known: it is less than what they still hop. What
+/// took an impulse has been in contact, and is told so. Where nothing is left to push, what is in
+/// touch is settled. False, and nothing has changed, where neither is possible, or it was done too
+/// often.
+bool EventContacts::end_by_pushing(std::span<const BodyIndex> seeds, double remaining, Instant t) {
+  const double frame = std::floor(t.seconds / run_.mean_frame);
+  pushed_ = pushed_in_ == frame ? pushed_ + 1 : 1;
+  pushed_in_ = frame;
+  if (pushed_ > most_pushes) {
+    return false;
+  }
+  EventModes::GroupImpact impact = modes_.impact_group(seeds, t, true);
+  if (!impact.refusal.empty() || impact.system.joints != nullptr || impact.system.rows.empty()) {
+    return false;
+  }
+  const bool belts = std::any_of(impact.bodies.begin(), impact.bodies.end(), [&](BodyIndex i) {
+    return !run_.model.entity(i).surface_velocity(run_.model.body(i), motions_.now(i)).isZero(0.0);
+  });
+  if (belts) {
+    return false;
+  }
+  const std::vector<SweptTouch> touches = touches_of(impact, run_.model);
+  std::vector<Vector6> before;
+  double fastest = 0.0;
+  for (std::size_t k = 0; k < impact.bodies.size(); ++k) {
+    before.push_back(stacked(impact.velocities[k]));
+    fastest = std::max(fastest, impact.velocities[k].linear.norm());
+  }
+  const ContactSweeps sweeps(impact.system.bodies, touches);
+  const auto swept = sweeps.sweep(before, {}, {}, settled * fastest, true);
+  run_.cost.contact_solves += swept.solves;
+  const bool some = std::any_of(swept.impulse.begin(), swept.impulse.end(),
+                                [](const Vector3& p) { return !p.isZero(0.0); });
+  if (!some || !(swept.changed <= accepted * fastest)) {
+    return !some && settle_stalled(seeds, t);
+  }
+  const std::vector<BodyIndex> free = give(impact, swept.velocities, seeds, t);
+  book_pushes(impact, touches, swept, before);
+  std::vector<EventModes::Change> changes;
+  for (std::size_t r = 0; r < touches.size(); ++r) {
+    const auto& [a, b] = impact.pairs[impact.pair_of_row[r]];
+    const bool told = !changes.empty() && changes.back().a == a && changes.back().b == b;
+    if (!swept.impulse[r].isZero(0.0) && !told && !graph_.joins(a, b)) {
+      changes.push_back({EventKind::contact_begins, a, b, Grade::sampled, remaining});
+      changes.push_back({EventKind::contact_ends, a, b, Grade::sampled});
+    }
+  }
+  if (!settle(free, t, {.unloaded = true, .may_turn = true})) {
+    set_free(free, t);
+    modes_.tell(changes, t);
+  }
+  return true;
+}
+
+/// Gives the bodies of a group other velocities; returns those that are free.
+std::vector<BodyIndex> EventContacts::give(const EventModes::GroupImpact& impact,
+                                           const std::vector<Vector6>& velocities,
+                                           std::span<const BodyIndex> seeds, Instant t) {
+  std::vector<BodyIndex> free;
+  for (std::size_t k = 0; k < impact.bodies.size(); ++k) {
+    const BodyIndex i = impact.bodies[k];
+    if (!run_.model.is_free(i)) {
+      continue;
+    }
+    free.push_back(i);
+    const bool known = std::find(seeds.begin(), seeds.end(), i) != seeds.end();
+    motions_.book(i, t);
+    const BodyState struck = motions_.now(i);
+    motions_.bring(i, t);
+    BodyState& now = motions_.now(i);
+    now = known ? struck : now;
+    BodyState from = now;
+    from.twist = impact.velocities[k];
+    run_.ledger.add(EnergyLine::projection, run_.account.gained(i, now, from));
+    now.twist = {velocities[k].head<3>(), velocities[k].tail<3>()};
+    run_.account.struck(i, from, now);
+  }
+  run_.ledger.add(EnergyLine::projection, -impact.driven);
+  run_.ledger.add(EnergyLine::driven_work, impact.driven);
+  return free;
+}
+
+/// What impulses did: p (u- + u+) / 2, along the normals and across, beside what driven bodies did.
+void EventContacts::book_pushes(const EventModes::GroupImpact& impact,
+                                std::span<const SweptTouch> touches,
+                                const ContactSweeps::Swept& swept,
+                                const std::vector<Vector6>& before) {
+  for (std::size_t r = 0; r < touches.size(); ++r) {
+    const SweptTouch& touch = touches[r];
+    const Vector3& p = swept.impulse[r];
+    const auto at = [&](const Vector6& v, std::size_t k, const Vector3& point) {
+      const Vector3 arm = point - impact.system.bodies[k].position;
+      return Vector3(v.head<3>() + Vector3(v.tail<3>()).cross(arm));
+    };
+    const auto slip = [&](const std::vector<Vector6>& v) {
+      return Vector3(at(v[touch.b], touch.b, touch.point_b) -
+                     at(v[touch.a], touch.a, touch.point_a));
+    };
+    const Vector3 mean = 0.5 * (slip(before) + slip(swept.velocities));
+    const Vector3 along = touch.normal * touch.normal.dot(p);
+    run_.ledger.add(EnergyLine::zeno_completion, along.dot(mean));
+    run_.ledger.add(EnergyLine::impact_friction, (p - along).dot(mean));
+    for (const auto& [k, point, sign] :
+         {std::tuple{touch.a, touch.point_a, 1.0}, {touch.b, touch.point_b, -1.0}}) {
+      if (run_.model.mobility(impact.bodies[k]) == Mobility::driven) {
+        run_.ledger.add(EnergyLine::driven_work, sign * p.dot(at(before[k], k, point)));
+      }
+    }
+  }
+}
+
+}  // namespace core
+}  // namespace kairos

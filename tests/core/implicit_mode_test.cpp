@@ -1,0 +1,118 @@
+// Contact forces of a whole step, against what the equations of its end say.
+
+#include "core/contacts/implicit_mode.hpp"
+
+#include "core/random.hpp"
+#include "tests/catch.hpp"
+
+#include <cmath>
+
+using namespace kairos;
+
+namespace {
+
+using Does = FrictionChoice::Does;
+constexpr double g = 9.8;
+
+/// A floor, and blocks of 2 kg that lie on it with four corners each, one every metre along x.
+TurningState blocks(const std::vector<Vector3>& velocities, double mu) {
+  const Vector3 half(0.1, 0.2, 0.1);
+  TurningState state;
+  state.bodies.push_back({});
+  state.states.push_back({});
+  state.loads.push_back({});
+  state.radius.push_back(0.0);
+  for (std::size_t i = 0; i < velocities.size(); ++i) {
+    BodyState moving;
+    moving.pose.position = {static_cast<double>(i), half.y(), 0.0};
+    moving.twist.linear = velocities[i];
+    GroupBody body;
+    body.inverse_mass = 0.5;
+    body.inverse_inertia =
+        Vector3(1.5 / (0.04 + 0.01), 1.5 / 0.02, 1.5 / (0.04 + 0.01)).asDiagonal();
+    body.position = moving.pose.position;
+    state.bodies.push_back(body);
+    state.states.push_back(moving);
+    state.loads.push_back({Vector3(0.0, -g, 0.0), Vector3::Zero()});
+    state.radius.push_back(half.norm());
+    for (const double x : {-0.1, 0.1}) {
+      for (const double z : {-0.1, 0.1}) {
+        Touch touch;
+        touch.b = i + 1;
+        touch.on_a = {TouchFeature::Kind::plane, Vector3::Zero(), Vector3::UnitY(), 0.0};
+        touch.on_b = {TouchFeature::Kind::ball, Vector3(x, -half.y(), z), Vector3::Zero(), 0.0};
+        touch.normal = Vector3::UnitY();
+        touch.friction = mu;
+        touch.pair = i;
+        state.touches.push_back(touch);
+      }
+    }
+  }
+  return state;
+}
+
+/// Velocity of a body at the end of a step of h.
+Twist after(const TurningMode& mode, std::size_t i, double h) {
+  return {mode.velocities[i].linear + h * mode.forces.accelerations[i].linear,
+          mode.velocities[i].angular + h * mode.forces.accelerations[i].angular};
+}
+
+}  // namespace
+
+// What slides on a line has forces that do not change: the step is exact but for where it ends.
+TEST_CASE("implicit step: blocks slow down by mu g, and stop where they would turn back",
+          "[implicit]") {
+  constexpr double mu = 0.3;
+  constexpr double h = 1e-3;
+  const TurningState state = blocks({{2.0, 0.0, 0.0}, {1e-3, 0.0, 0.0}, {0.0, 0.0, -3.0}}, mu);
+  const TurningMode mode = implicit_mode(state, h, {});
+  REQUIRE(mode.refusal.empty());
+  CHECK(mode.implicit);
+  // Sweeps settle to 1e-10 of what the loads do in a step.
+  const double bound = 1e-8 * g * h;
+  CHECK((after(mode, 1, h).linear - Vector3(2.0 - mu * g * h, 0.0, 0.0)).norm() <= bound);
+  CHECK(after(mode, 2, h).linear.norm() <= bound);
+  CHECK((after(mode, 3, h).linear - Vector3(0.0, 0.0, -3.0 + mu * g * h)).norm() <= bound);
+  for (std::size_t k = 0; k < 12; ++k) {
+    CHECK(mode.choices[k].does == (k / 4 == 1 ? Does::sticks : Does::slides));
+  }
+  // Begun with its own forces the search is over at once, and finds the same.
+  const TurningMode again = implicit_mode(state, h, mode.forces.force);
+  CHECK((after(again, 1, h).linear - after(mode, 1, h).linear).norm() <= bound);
+  CHECK(again.solves < mode.solves);
+}
+
+TEST_CASE("implicit step: impulses are within their cones, and take energy from what they meet",
+          "[implicit]") {
+  constexpr std::uint64_t seed = 20261124;
+  CAPTURE(seed);
+  Random random(seed);
+  for (int trial = 0; trial < 200; ++trial) {
+    CAPTURE(trial);
+    const double mu = random.uniform(0.0, 2.0);
+    const double h = std::pow(10.0, random.uniform(-6.0, -2.0));
+    std::vector<Vector3> velocities;
+    for (int i = 0; i < 3; ++i) {
+      velocities.emplace_back(random.uniform(-1.0, 1.0) * h, 0.0, random.uniform(-1.0, 1.0) * h);
+    }
+    TurningState state = blocks(velocities, mu);
+    for (std::size_t i = 1; i < state.loads.size(); ++i) {
+      state.loads[i].linear += Vector3(random.uniform(-9.0, 9.0), 0.0, random.uniform(-9.0, 9.0));
+      state.loads[i].angular = Vector3(0.0, random.uniform(-9.0, 9.0), 0.0);
+    }
+    const TurningMode mode = implicit_mode(state, h, {});
+    REQUIRE(mode.refusal.empty());
+    double work = 0.0;
+    for (std::size_t k = 0; k < state.touches.size(); ++k) {
+      const Touch& touch = state.touches[k];
+      const Vector3& f = mode.forces.force[k];
+      CHECK(f.y() >= 0.0);
+      CHECK(std::hypot(f.x(), f.z()) <= mu * f.y() * (1.0 + 1e-9));
+      const Twist v = after(mode, touch.b, h);
+      const Vector3 arm = touch.on_b.at;
+      work += f.dot(v.linear + v.angular.cross(arm));
+    }
+    // Some 20 N act at some .05 m/s; what sweeps leave is 1e-10 of both.
+    CHECK(work <= 1e-7 * h);
+  }
+}
