@@ -1,5 +1,6 @@
 #include "core/reading/scene_reader.hpp"
 #include "experiments/bench/bench.hpp"
+#include "experiments/bench/gas_halves.hpp"
 #include "experiments/bench/gas_peers.hpp"
 #include "experiments/processor_time.hpp"
 #include "simulation/scene_library.hpp"
@@ -16,6 +17,7 @@
 #include <numbers>
 #include <string>
 #include <string_view>
+#include <thread>
 
 namespace kairos::experiments {
 namespace {
@@ -142,6 +144,24 @@ void print_ode(std::size_t balls) {
   }
 }
 
+/// What a second core could do for such a run; 0: there is no second one.
+void print_halves(std::size_t balls, double duration, const GasRun& run, double hand_over) {
+  if (!(hand_over > 0.0)) {
+    return;
+  }
+  GasHalves halves;
+  const RunChoice choice{.frames = FixedFrames{duration}, .duration = duration};
+  (void)simulate(gas(balls, "cells"), choice, halves);
+  const double impact = run.seconds / static_cast<double>(std::max<std::int64_t>(run.impacts, 1));
+  fmt::print(
+      "  {:>9} two cores, at best: {:.2f} times as fast were handing over for nothing, {:.2f} as "
+      "it "
+      "takes {:.2f} us (every {:.0f} impacts)\n",
+      balls, halves.speedup(impact, 0.0), halves.speedup(impact, hand_over), 1e6 * hand_over,
+      static_cast<double>(halves.impacts()) /
+          static_cast<double>(std::max<std::int64_t>(halves.across(), 1)));
+}
+
 void print_boxes(std::size_t boxes, int rounds) {
   constexpr double least_box_impacts = 4000.0;
   const auto n = static_cast<double>(boxes);
@@ -166,6 +186,7 @@ void bench_gas(std::vector<std::size_t> counts, const std::vector<std::size_t>& 
       "of {} rounds in turn\n  {:>9} {:<14}{:>10}{:>14}{:>14}{:>17}{:>13}{:>14}{:>10}\n",
       fraction, rounds, "balls", "broad phase", "impacts", "thousand a s", "queries each",
       "s a simulated s", "least gap", "bytes a ball", "energy");
+  const double hand_over = std::thread::hardware_concurrency() > 1 ? hand_over_seconds() : 0.0;
   const double before = most_memory();
   for (const std::size_t balls : counts) {
     // A ball has some 1 / (2 r) impacts a second at this fraction, its speed being about 1.6 m/s.
@@ -195,6 +216,7 @@ void bench_gas(std::vector<std::size_t> counts, const std::vector<std::size_t>& 
                  run.queries, run.seconds / run.simulated, run.least_gap,
                  k == 0 ? fmt::format("{:.0f}", bytes) : "", run.energy_error);
     }
+    print_halves(balls, duration, runs.front(), hand_over);
     constexpr std::size_t too_many_for_ode = 10'000;
     if (balls <= too_many_for_ode) {
       print_ode(balls);
