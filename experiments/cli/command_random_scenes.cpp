@@ -25,6 +25,7 @@ struct RandomScenesCommand {
   SceneSurvey survey;
   std::map<SceneKind, bool> asked;  ///< by its flag, at most one
   std::string out;
+  bool print = false;
 
   void run() const;
   [[nodiscard]] Tally watched() const;
@@ -76,6 +77,12 @@ void RandomScenesCommand::shrink_failures(const Tally& tally) const {
 }
 
 void RandomScenesCommand::run() const {
+  if (print) {
+    for (std::uint64_t k = 0; k < survey.count; ++k) {
+      fmt::print("{}", scene_of(survey, survey.first + k).toml());
+    }
+    return;
+  }
   const Tally tally = watched();
   fmt::print("scenes                {} (seed {}, numbers {} to {})\n", tally.scenes, survey.seed,
              survey.first, survey.first + survey.count - 1);
@@ -83,8 +90,8 @@ void RandomScenesCommand::run() const {
   for (const Fate fate : all_fates) {
     fmt::print("{:<22}{}\n", to_string(fate), tally.of(fate));
   }
-  for (const auto& [reason, n] : tally.stops) {
-    fmt::print("  {:<20}{}\n", reason, n);
+  for (const auto& [reason, stops] : tally.stops) {
+    fmt::print("  {:<6}{} (first: {})\n", stops.scenes, reason, stops.first);
   }
   fmt::print(stderr, "{:.1f} s of processor time\n", tally.seconds);
 
@@ -149,6 +156,8 @@ void add_random_scenes_command(Command& app) {
                   "written here and nothing else is kept")
       .type_name("DIR")
       .check(some_path());
+  random.add_flag("--print", command->print,
+                  "only write these scenes to stdout, as scene files: --first N --count 1 --print");
   random.callback([command] {
     for (const auto& [kind, is_asked] : command->asked) {
       if (is_asked) {

@@ -51,12 +51,14 @@ class Builder : SceneBuilder {
       for (RandomBody& b : scene_.bodies) {
         b.friction = hangs(b) ? 0.0 : random_friction(random_);
       }
+      for (RandomBody& b : scene_.bodies) {
+        b.friction = hangs(b) && chance(0.8) ? random_friction(random_) : b.friction;
+      }
     }
     return std::move(scene_);
   }
 
  private:
-  /// What hangs on joints is smooth: friction is not treated there.
   [[nodiscard]] bool hangs(const RandomBody& b) const {
     return b.moves() &&
            std::any_of(scene_.joints.begin(), scene_.joints.end(), [&](const RandomJoint& joint) {

@@ -137,8 +137,8 @@ std::string survey_summary(const SceneSurvey& survey, const Tally& tally) {
   }
   json.close();
   json.open("stops");
-  for (const auto& [reason, n] : tally.stops) {
-    json.count(reason, count(n));
+  for (const auto& [reason, stops] : tally.stops) {
+    json.count(reason, count(stops.scenes));
   }
   json.close();
   json.open("failures");

@@ -3,6 +3,7 @@
 #include "core/archive.hpp"
 #include "core/error.hpp"
 #include "core/reading/scene_reader.hpp"
+#include "experiments/random/plain_room.hpp"
 #include "experiments/random/scene_watch.hpp"
 #include "simulation/simulate.hpp"
 
@@ -165,12 +166,22 @@ Trial try_model(const Model& model, bool roundoff, RunResult* end = nullptr) {
   }
 }
 
+/// A stop where nothing rigid goes on is right, too.
+Trial judged(const RandomScene& scene, Trial trial) {
+  if (trial.fate == Fate::stopped && leaves_no_room(scene, trial.time, trial.time + scene.frame)) {
+    trial.fate = Fate::no_room;
+  }
+  return trial;
+}
+
 }  // namespace
 
 std::string_view to_string(Fate fate) {
   switch (fate) {
     case Fate::right:
       return "right";
+    case Fate::no_room:
+      return "no room left";
     case Fate::stopped:
       return "stopped";
     case Fate::not_finite:
@@ -204,7 +215,7 @@ Trial try_scene(const RandomScene& scene) {
     const Model model(parse_scene(scene.toml(), scene.name + ".toml"));
     const Trial trial = try_model(model, false);
     // Roundoff is replayed only for failures of the ledger.
-    return trial.fate == Fate::ledger ? try_model(model, true) : trial;
+    return judged(scene, trial.fate == Fate::ledger ? try_model(model, true) : trial);
   } catch (const InputError& error) {
     return {Fate::invalid, error.what(), 0.0, 0};
   }

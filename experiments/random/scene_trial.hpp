@@ -16,7 +16,8 @@ namespace kairos::experiments {
 /// What became of a scene under `event-driven` with `certified`.
 enum class Fate {
   right,       ///< ran to its end: finite, no overlap, its energy accounted for
-  stopped,     ///< said why it cannot go on
+  no_room,     ///< stopped within a frame of where nothing rigid goes on (`leaves_no_room`)
+  stopped,     ///< said why it cannot go on, elsewhere
   not_finite,  ///< NaN or infinity
   overlap,     ///< solids inside each other in a drawn frame
   ledger,      ///< energy that no line explains, beyond roundoff
@@ -29,9 +30,10 @@ enum class Fate {
   friction,    ///< friction, or hops that die down, gave energy
 };
 constexpr Fate last_of(Fate) { return Fate::friction; }
-inline constexpr std::array all_fates{Fate::right, Fate::not_finite, Fate::overlap, Fate::ledger,
-                                      Fate::hang,  Fate::law,        Fate::apart,   Fate::differs,
-                                      Fate::joint, Fate::friction,   Fate::invalid, Fate::stopped};
+inline constexpr std::array all_fates{Fate::right,   Fate::no_room, Fate::not_finite, Fate::overlap,
+                                      Fate::ledger,  Fate::hang,    Fate::law,        Fate::apart,
+                                      Fate::differs, Fate::joint,   Fate::friction,   Fate::invalid,
+                                      Fate::stopped};
 [[nodiscard]] std::string_view to_string(Fate fate);
 
 struct Trial {
@@ -41,7 +43,9 @@ struct Trial {
   std::int64_t impacts = 0;
 
   /// A promise that was broken: not a stop that says why.
-  [[nodiscard]] bool failed() const { return fate != Fate::right && fate != Fate::stopped; }
+  [[nodiscard]] bool failed() const {
+    return fate != Fate::right && fate != Fate::no_room && fate != Fate::stopped;
+  }
   void persist(Archive& archive);
 };
 

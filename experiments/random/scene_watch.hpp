@@ -25,7 +25,7 @@ class SceneWatch : public Recorder {
  public:
   /// More events in a frame than any of these scenes has: they last for a few crossings of the
   /// room. A run that takes more must stop by itself.
-  static constexpr std::int64_t most_in_frame = 20'000;
+  static constexpr std::int64_t most_in_frame = 100'000;
 
   void begin(const Model& model) override { model_ = &model; }
   void frame(const Frame& frame) override;

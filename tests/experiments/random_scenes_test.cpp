@@ -10,6 +10,7 @@
 #include "experiments/parallel_for.hpp"
 #include "experiments/random/plain_overlap.hpp"
 #include "experiments/random/plain_parts.hpp"
+#include "experiments/random/plain_room.hpp"
 #include "experiments/random/scene_survey.hpp"
 #include "experiments/random/scene_watch.hpp"
 #include "simulation/scene_library.hpp"
@@ -148,10 +149,16 @@ TEST_CASE("random scenes of balls: no NaN, no overlap, no hang, one result", "[r
 }
 
 TEST_CASE("scenes of balls that failed once", "[random]") {
-  // The first crossed its cell without end where a curved motion of a ball was over; in the others
-  // balls lie on each other as images, which the judge took to be apart.
-  for (const std::uint64_t index : {40473U, 2788U, 8949U}) {
-    const Trial trial = try_by_two_searches(balls_scene(15, index));
+  // The first crossed its cell without end where a curved motion of a ball was over; in the next
+  // two balls lie on each other as images, which the judge took to be apart; in 432 a group that
+  // was lifted was pushed 1e-12 m into an image. With every pair asked, a large ball among many
+  // crossed on ever shorter ways (29833), and a ball was not told of a wall in touch with it
+  // (58680, 92604); where 89529 stopped depended on how often balls crossed.
+  using Case = std::pair<std::uint64_t, std::uint64_t>;
+  for (const auto& [from, index] :
+       {Case{15, 40473}, Case{15, 2788}, Case{15, 8949}, Case{20261124, 432}, Case{20261125, 29833},
+        Case{20261125, 58680}, Case{20261125, 92604}, Case{20261125, 89529}}) {
+    const Trial trial = try_by_two_searches(balls_scene(from, index));
     INFO(index << ": " << to_string(trial.fate) << ": " << trial.reason);
     CHECK_FALSE(trial.failed());
   }
@@ -310,11 +317,73 @@ TEST_CASE("bodies on joints: scenes that stopped where contact lasts", "[random]
   // elastic, handed an impact to and fro between them.
   for (const auto& [of_seed, index] :
        {std::pair(3107, 33), {3107, 53}, {3107, 209}, {31, 128}, {4711, 121}}) {
-    const Trial trial = try_scene(
-        jointed_scene(static_cast<std::uint64_t>(of_seed), static_cast<std::uint64_t>(index)));
+    RandomScene scene =
+        jointed_scene(static_cast<std::uint64_t>(of_seed), static_cast<std::uint64_t>(index));
+    for (const RandomJoint& joint : scene.joints) {
+      for (RandomBody& b : scene.bodies) {  // they did so without friction
+        const bool hangs =
+            std::find(joint.bodies.begin(), joint.bodies.end(), b.name) != joint.bodies.end();
+        b.friction = hangs && b.moves() ? 0.0 : b.friction;
+      }
+    }
+    const Trial trial = try_scene(scene);
     CAPTURE(of_seed, index, trial.reason);
     CHECK(trial.fate == Fate::right);
   }
+}
+
+TEST_CASE("random scenes of bodies in touch that stopped once", "[random]") {
+  // A box pushed from its rim by a ball, boxes that tilt over each other's rims, a collapse that
+  // takes no time, two pairs of a body that stall at one instant.
+  for (const std::uint64_t index : {54U, 84U, 155U, 174U, 201U}) {
+    const Trial trial = try_scene(touching_scene(772, index));
+    CAPTURE(index, trial.reason);
+    CHECK(trial.fate == Fate::right);
+  }
+}
+
+TEST_CASE("a random scene is written as it is run", "[random]") {
+  const auto written = tests::kairos_program(
+      {"random-scenes", "--touching", "--seed", "772", "--first", "54", "--count", "1", "--print"});
+  CHECK(written.exit_code == 0);
+  CHECK(written.out == touching_scene(772, 54).toml());
+}
+
+TEST_CASE("the judge of room between walls that close in", "[random]") {
+  // A wall at 1 m that swings by 0.5 m, 1 + 0.5 sin(2 pi t), over a floor: it is lowest, 0.5 m, at
+  // 0.75 s.
+  RandomScene scene;
+  RandomBody floor;
+  floor.entity = "wall";
+  floor.shape = "half-space";
+  RandomBody lid = floor;
+  lid.normal = -Vector3::UnitY();
+  lid.position = {0.0, 1.0, 0.0};
+  lid.swing = {0.0, 0.5, 0.0};
+  lid.frequency = 1.0;
+  RandomBody ball;
+  ball.entity = "ball";
+  ball.shape = "sphere";
+  ball.radius = 0.2501;
+  scene.bodies = {floor, lid, ball};
+  CHECK(leaves_no_room(scene, 0.7, 0.8));
+  CHECK_FALSE(leaves_no_room(scene, 0.0, 0.7));
+  scene.bodies[2].radius = 0.2499;
+  CHECK_FALSE(leaves_no_room(scene, 0.0, 2.0));
+  // A box lies down where it cannot stand.
+  scene.bodies[2].entity = "body";
+  scene.bodies[2].shape = "box";
+  scene.bodies[2].half_extents = {0.2499, 1.0, 1.0};
+  CHECK_FALSE(leaves_no_room(scene, 0.0, 2.0));
+  scene.bodies[2].half_extents = {0.2501, 1.0, 1.0};
+  CHECK(leaves_no_room(scene, 0.0, 2.0));
+  // Walls that do not face each other leave room beside them; one that rests closes nothing in.
+  scene.bodies[1].normal = Vector3(0.1, -1.0, 0.0).normalized();
+  CHECK_FALSE(leaves_no_room(scene, 0.0, 2.0));
+  scene.bodies[1] = lid;
+  scene.bodies[1].swing.setZero();
+  scene.bodies[1].position.y() = 0.4;
+  CHECK_FALSE(leaves_no_room(scene, 0.0, 2.0));
 }
 
 TEST_CASE("the judge tells a joint that is open, and friction that drives", "[random]") {
