@@ -51,8 +51,12 @@ void ProgressBar::draw() const {
       done_ == 0
           ? fmt::format("{:.0f} s so far", elapsed)
           : fmt::format("{:.0f} s left", elapsed * (static_cast<double>(total_) - done) / done);
-  fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {}/{} {}", label_, "", filled, "", width - filled,
-             done_, total_, time);
+  const double within = within_.load(std::memory_order_relaxed);
+  const std::string piece = within > 0.0 && done_ < total_
+                                ? fmt::format(", one at {:.2g} % of its way", 100.0 * within)
+                                : "";
+  fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {}/{}{} {}", label_, "", filled, "",
+             width - filled, done_, total_, piece, time);
   std::fflush(stderr);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
@@ -23,6 +24,10 @@ class ProgressBar {
   void advance();
   /// So many are done.
   void reach(std::size_t done);
+  /// Whether anybody sees it.
+  [[nodiscard]] bool is_drawn() const { return drawer_.joinable(); }
+  /// One of those at work has come so far, 0 to 1; of pieces that may take long.
+  void reach_within(double share) { within_.store(share, std::memory_order_relaxed); }
 
  private:
   void draw_until(const std::stop_token& stop);
@@ -31,6 +36,7 @@ class ProgressBar {
   std::string label_;
   std::size_t total_;
   std::size_t done_ = 0;
+  std::atomic<double> within_ = 0.0;
   std::chrono::steady_clock::time_point start_;
   std::mutex mutex_;
   std::condition_variable_any stopped_;

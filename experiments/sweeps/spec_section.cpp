@@ -11,7 +11,7 @@ namespace kairos::experiments {
 namespace {
 
 /// As a TOML string of one line: it is put into a scene again.
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     const auto code = static_cast<unsigned char>(c);
@@ -145,7 +145,7 @@ std::string toml_literal(const Item& item) {
     return *flag ? "true" : "false";
   }
   if (const auto* text = std::get_if<std::string>(&data)) {
-    return quoted(*text);
+    return in_quotes(*text);
   }
   if (std::holds_alternative<double>(data) || std::holds_alternative<std::int64_t>(data)) {
     return fmt::format("{}", number_of(item, {}));

@@ -10,6 +10,7 @@
 #include "experiments/sweeps/sweep_journal.hpp"
 #include "experiments/sweeps/sweep_plan.hpp"
 #include "experiments/sweeps/sweep_table.hpp"
+#include "experiments/way_of_run.hpp"
 
 #include <fmt/format.h>
 
@@ -23,7 +24,8 @@ namespace kairos::experiments {
 namespace {
 
 /// Simulates and measures one planned run; everything that can go wrong becomes a status.
-RunRecord run_one(const SweepSpec& spec, const std::string& scene, const PlannedRun& planned) {
+RunRecord run_one(const SweepSpec& spec, const std::string& scene, const PlannedRun& planned,
+                  ProgressBar& bar) {
   RunRecord record;
   if (!planned.refused.empty()) {
     record.status = "refused";
@@ -38,6 +40,10 @@ RunRecord run_one(const SweepSpec& spec, const std::string& scene, const Planned
     std::vector<Recorder*> listeners{&metrics};
     if (spec.series) {
       listeners.push_back(&series);
+    }
+    WayOfRun way(bar, duration);
+    if (bar.is_drawn()) {
+      listeners.push_back(&way);
     }
     Broadcast recorder(listeners);
     const RunResult result = simulate(model, planned.choice, recorder);
@@ -74,10 +80,11 @@ void check_readable(const SweepSpec& spec, const std::string& scene, const Sweep
   }
 }
 
-RunRecord timed_run(const SweepSpec& spec, const std::string& scene, const PlannedRun& planned) {
+RunRecord timed_run(const SweepSpec& spec, const std::string& scene, const PlannedRun& planned,
+                    ProgressBar& bar) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
-  RunRecord record = run_one(spec, scene, planned);
+  RunRecord record = run_one(spec, scene, planned, bar);
   record.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return record;
 }
@@ -101,7 +108,7 @@ std::size_t run_missing(const SweepSpec& spec, const SweepPlan& plan, const std:
       return;
     }
     if (!journal.has(i)) {
-      RunRecord record = timed_run(spec, scene, plan[i]);
+      RunRecord record = timed_run(spec, scene, plan[i], bar);
       journal.add(i, record);
     }
     bar.advance();
@@ -139,7 +146,7 @@ SweepResult run_sweep(const SweepSpec& spec, std::size_t threads) {
   {
     ProgressBar bar(spec.name, plan.size());
     parallel_for(plan.size(), threads, [&](std::size_t i) {
-      records[i] = timed_run(spec, scene, plan[i]);
+      records[i] = timed_run(spec, scene, plan[i], bar);
       bar.advance();
     });
   }

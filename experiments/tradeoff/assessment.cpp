@@ -2,6 +2,7 @@
 
 #include "experiments/output/plain_file_name.hpp"
 #include "experiments/parallel_for.hpp"
+#include "experiments/progress_bar.hpp"
 
 #include <fmt/format.h>
 
@@ -27,15 +28,17 @@ Assessment assess(const Model& model, double duration, std::size_t threads) {
   for (Candidate& candidate : sensible_candidates(model)) {
     assessment.methods.push_back({std::move(candidate), {}, {}});
   }
+  ProgressBar bar("methods", assessment.methods.size());
   parallel_for(assessment.methods.size(), threads, [&](std::size_t i) {
     Assessed& method = assessment.methods[i];
-    method.run = measure(model, up_to(method.candidate.choice, assessment.reference.until));
+    method.run = measure(model, up_to(method.candidate.choice, assessment.reference.until), &bar);
     method.errors = errors_of(method.run, assessment.reference);
     if (method.run.completed() && !(method.errors.position <= assessment.reference.scale)) {
       method.run.status = "diverged";
       method.run.reason = fmt::format("ends {:.1e} m off where nothing gets farther than {:.1e} m",
                                       method.errors.position, assessment.reference.scale);
     }
+    bar.advance();
   });
   return assessment;
 }

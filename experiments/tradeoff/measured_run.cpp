@@ -2,8 +2,10 @@
 
 #include "core/error.hpp"
 #include "experiments/output/broadcast.hpp"
+#include "experiments/way_of_run.hpp"
 
 #include <chrono>
+#include <optional>
 
 namespace kairos::experiments {
 namespace {
@@ -36,11 +38,16 @@ class ImpactTimes : public Recorder {
 
 }  // namespace
 
-MeasuredRun measure(const Model& model, const RunChoice& choice) {
+MeasuredRun measure(const Model& model, const RunChoice& choice, ProgressBar* bar) {
   MeasuredRun run;
   MetricsRecorder metrics;
   ImpactTimes impacts;
-  Broadcast recorder({&metrics, &impacts});
+  std::vector<Recorder*> listeners{&metrics, &impacts};
+  std::optional<WayOfRun> way;
+  if (bar != nullptr && bar->is_drawn()) {
+    listeners.push_back(&way.emplace(*bar, choice.duration.value_or(model.scene().duration)));
+  }
+  Broadcast recorder(listeners);
   try {
     RunResult result = simulate(model, choice, recorder);
     run.status = result.status == RunStatus::completed ? "completed" : "stopped";

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "experiments/progress_bar.hpp"
 #include "simulation/run_metrics.hpp"
 #include "simulation/simulate.hpp"
 
@@ -27,8 +28,9 @@ struct MeasuredRun {
 };
 
 /// Runs and measures; what cannot run or does not end in `most_calls` frames and events is a
-/// status. Frames at which it is looked at are the method's own.
-[[nodiscard]] MeasuredRun measure(const Model& model, const RunChoice& choice);
+/// status. Frames at which it is looked at are the method's own. `bar` is told how far the run is.
+[[nodiscard]] MeasuredRun measure(const Model& model, const RunChoice& choice,
+                                  ProgressBar* bar = nullptr);
 
 /// Seconds of one run without any measuring.
 [[nodiscard]] double time_run(const Model& model, const RunChoice& choice);

@@ -1,5 +1,7 @@
 #include "experiments/tradeoff/recommend.hpp"
 
+#include "experiments/progress_bar.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,7 +42,8 @@ WholeRun whole_run_of(const Model& model, const Reference& reference, const Requ
     if (reference.until < reference.whole) {
       RunChoice choice = method.candidate.choice;
       choice.duration = reference.whole;
-      run = measure(model, choice);
+      ProgressBar bar("over the whole duration", 1);
+      run = measure(model, choice, &bar);
     }
     if (!run.completed()) {
       return fmt::format("over {:g} s: {}: {}", reference.whole, run.status, run.reason);

@@ -2,7 +2,10 @@
 
 #include "core/error.hpp"
 #include "core/exact_solution.hpp"
+#include "experiments/output/broadcast.hpp"
+#include "experiments/progress_bar.hpp"
 #include "experiments/run_error.hpp"
+#include "experiments/way_of_run.hpp"
 
 #include <fmt/format.h>
 
@@ -38,17 +41,20 @@ class Places : public Recorder {
   std::vector<Vector3> positions;
 };
 
-Places places_of(const Model& model, double duration) {
+Places places_of(const Model& model, double duration, ProgressBar& bar) {
   Places places;
+  WayOfRun way(bar, duration);
+  Broadcast recorder({&places, &way});
   RunChoice choice;
   choice.duration = duration;
-  (void)simulate(model, choice, places);
+  (void)simulate(model, choice, recorder);
+  bar.advance();
   return places;
 }
 
 /// When a small displacement of one body has grown ten thousandfold, s; nullopt: it does not.
 /// Growth by geometry alone (a ball flies on at another angle) is linear in time and far less.
-std::optional<double> time_of_growth(const Model& model, double duration) {
+std::optional<double> time_of_growth(const Model& model, double duration, ProgressBar& bar) {
   constexpr double growth = 1e4;
   Scene scene = model.scene();
   double shift = 0.0;
@@ -58,8 +64,8 @@ std::optional<double> time_of_growth(const Model& model, double duration) {
       scene.bodies[i].initial.pose.position += shift * Vector3(0.48, 0.6, 0.64);
     }
   }
-  const Places plain = places_of(model, duration);
-  const Places moved = places_of(Model(scene), duration);
+  const Places plain = places_of(model, duration, bar);
+  const Places moved = places_of(Model(scene), duration, bar);
   const std::size_t n = std::min(plain.positions.size(), moved.positions.size());
   for (std::size_t k = 0; k < n; ++k) {
     if ((plain.positions[k] - moved.positions[k]).norm() > growth * shift) {
@@ -132,8 +138,8 @@ std::vector<std::string> unseen_kinds(const Model& model, const MeasuredRun& who
 }
 
 /// How far free bodies get from where they began, and the size of the largest, m.
-double scale_of(const Model& model, double duration) {
-  const Places places = places_of(model, duration);
+double scale_of(const Model& model, double duration, ProgressBar& bar) {
+  const Places places = places_of(model, duration, bar);
   const std::size_t n = model.size();
   double scale = 0.0;
   for (std::size_t k = 0; k < places.positions.size(); ++k) {
@@ -160,8 +166,10 @@ void cut_accumulations(Reference& reference) {
 
 Reference find_reference(const Model& model, double duration) {
   Reference reference;
+  ProgressBar bar("reference", 6);  // runs
   RunChoice whole = tightest(duration, 1e-13);
-  const MeasuredRun first = measure(model, whole);
+  const MeasuredRun first = measure(model, whole, &bar);
+  bar.advance();
   if (!first.completed() && !(first.reached > 0.0)) {
     throw RunError("no reference: event-driven " + first.status + ": " + first.reason);
   }
@@ -184,7 +192,7 @@ Reference find_reference(const Model& model, double duration) {
   } catch (const InputError&) {
     exact = nullptr;  // a value was set that makes it another scene
   }
-  if (const auto grown = exact ? std::nullopt : time_of_growth(model, reference.until)) {
+  if (const auto grown = exact ? std::nullopt : time_of_growth(model, reference.until, bar)) {
     reference.lyapunov = *grown / std::log(1e4);
     reference.until = std::max(frame, frame * std::floor(reference.lyapunov / frame));
     reference.sentence = fmt::format(
@@ -193,11 +201,13 @@ Reference find_reference(const Model& model, double duration) {
         reference.until, reference.lyapunov, duration, reference.whole_impacts);
   }
 
-  const MeasuredRun tight = measure(model, tightest(reference.until, 1e-13));
-  const MeasuredRun looser = measure(model, tightest(reference.until, 1e-11));
+  const MeasuredRun tight = measure(model, tightest(reference.until, 1e-13), &bar);
+  bar.advance();
+  const MeasuredRun looser = measure(model, tightest(reference.until, 1e-11), &bar);
+  bar.advance();
   reference.whole = duration;
   reference.unseen = unseen_kinds(model, first, tight);
-  reference.scale = scale_of(model, reference.until);
+  reference.scale = scale_of(model, reference.until, bar);
   reference.kind = "event-driven, tightest";
   reference.impacts = tight.impacts;
   reference.positions.resize(model.size());

@@ -13,6 +13,10 @@
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
 
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -122,4 +126,22 @@ TEST_CASE("parallel_for calls each index once and hands on what was thrown", "[p
                                  }),
                     std::runtime_error);
   }
+}
+
+TEST_CASE("to start a thread does not fill the memory that is kept free for stacks", "[parallel]") {
+  // The greatest size of a process that starts so many threads, KiB.
+  const auto size_with = [](std::size_t threads) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      start_threads(threads, [] {}).clear();
+      ::_exit(0);
+    }
+    int status = 0;
+    ::rusage usage{};
+    REQUIRE(::wait4(child, &status, 0, &usage) == child);
+    REQUIRE(status == 0);
+    return usage.ru_maxrss;
+  };
+  // 48 MiB are kept; a stack, its guard and what a sanitizer knows of both take less than this.
+  CHECK(size_with(1) < size_with(0) + 24 * 1024);
 }

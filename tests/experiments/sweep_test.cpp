@@ -11,6 +11,11 @@
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
 
+#include <fcntl.h>
+#include <pty.h>
+#include <unistd.h>
+
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -374,4 +379,29 @@ TEST_CASE("rows of another sweep, or torn ones, are not taken for this one's", "
   }
   CHECK(SweepJournal(path, "kairos sweep 1 fedcba9876543210", runs).size() == 0);
   CHECK(SweepJournal(folder.file("foreign", "not a journal"), key, runs).size() == 0);
+}
+
+TEST_CASE("a sweep tells on a terminal how far a run has come that takes long", "[sweep]") {
+  int terminal = -1;
+  int program_side = -1;
+  std::array<char, 256> name{};
+  REQUIRE(::openpty(&terminal, &program_side, name.data(), nullptr, nullptr) == 0);
+  const tests::TemporaryFolder folder;
+  const std::string spec = folder.file("long.toml",
+                                       "scene = \"bounce\"\nmetrics = [\"impacts\"]\n"
+                                       "[options]\nduration = 1e9\n"
+                                       "[[method]]\nscheme = \"original\"\n");
+  // 6e10 frames: it does not end before it is ended.
+  const tests::Outcome outcome =
+      tests::kairos_program({"sweep", spec}, {.error = name.data(), .processor_seconds = 1});
+  CHECK(outcome.exit_code < 0);
+  ::close(program_side);
+  std::string shown;
+  std::array<char, 4096> block{};
+  for (ssize_t size = 1; size > 0;) {
+    size = ::read(terminal, block.data(), block.size());
+    shown.append(block.data(), static_cast<std::size_t>(size > 0 ? size : 0));
+  }
+  ::close(terminal);
+  CHECK(shown.find("0/1, one at ") != std::string::npos);
 }
