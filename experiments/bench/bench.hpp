@@ -38,8 +38,11 @@ void bench_queries(std::size_t pairs, int rounds);
 void bench_vfee(std::size_t queries, int rounds);
 /// A gas of so many balls each: impacts a second, queries an impact, memory a ball (scene and model
 /// included; of the largest yet, so counts go up), under cells and, where it ends, a tree; ODE
-/// beside them, where it was found. Then gases of so many tumbling boxes.
-void bench_gas(std::vector<std::size_t> counts, const std::vector<std::size_t>& boxes, int rounds);
+/// beside them, where it was found; what reading, the model and a frame take of a ball.
+/// `with_kinds`: also gases that fall, of several sizes, and denser ones. Then gases of so many
+/// tumbling boxes.
+void bench_gas(std::vector<std::size_t> counts, const std::vector<std::size_t>& boxes, int rounds,
+               bool with_kinds);
 /// Stacks of boxes and chains of links, beside Bullet, ODE and Box2D where they were found: time a
 /// step, and how far off each ends.
 void bench_contact(int rounds);

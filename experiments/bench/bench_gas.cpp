@@ -7,6 +7,7 @@
 #include "simulation/simulate.hpp"
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -27,17 +29,38 @@ constexpr double fraction = 0.1;
 /// A run has about so many impacts at least: fewer are over too soon to be timed.
 constexpr double least_impacts = 40'000.0;
 
-double radius_of(std::size_t balls) {
-  return std::cbrt(fraction * 3.0 / (4.0 * std::numbers::pi * static_cast<double>(balls)));
+/// Radius of so many equal balls that fill this part of the room, m.
+double radius_of(std::size_t balls, double part = fraction) {
+  return std::cbrt(part * 3.0 / (4.0 * std::numbers::pi * static_cast<double>(balls)));
 }
 
-Model gas(std::size_t balls, std::string_view broad_phase) {
+/// In what a gas differs from the plain one.
+struct GasKind {
+  std::string_view name;
+  double part = fraction;  ///< of the room that the balls fill
+  bool falls = false;      ///< under 1 m/s^2: the room is then as high as the gas would be deep
+  bool sizes = false;      ///< radii uniform from one to two
+};
+
+constexpr std::array<GasKind, 4> kinds{{{.name = "gravity", .falls = true},
+                                        {.name = "radii 1:2", .sizes = true},
+                                        {.name = "both", .falls = true, .sizes = true},
+                                        {.name = "fraction .49", .part = 0.49}}};
+
+Scene gas_scene(std::size_t balls, const GasKind& kind = {}) {
+  // The mean of x^3 for x uniform from 1 to 2.
+  constexpr double mean_volume = 15.0 / 4.0;
+  const double radius = radius_of(balls, kind.part) / (kind.sizes ? std::cbrt(mean_volume) : 1.0);
+  return read_scene(find_scene("gas"), {{"many.ball.count", fmt::format("{}", balls)},
+                                        {"many.ball.radius", fmt::format("{:.17g}", radius)},
+                                        {"many.ball.sizes", kind.sizes ? "[1.0, 2.0]" : "[1, 1]"},
+                                        {"G", kind.falls ? "1.0" : "0.0"}});
+}
+
+Model gas(std::size_t balls, std::string_view broad_phase, const GasKind& kind = {}) {
   ModelOptions options;
   options.broad_phase = broad_phase;
-  return Model(read_scene(find_scene("gas"),
-                          {{"many.ball.count", fmt::format("{}", balls)},
-                           {"many.ball.radius", fmt::format("{:.17g}", radius_of(balls))}}),
-               options);
+  return Model(gas_scene(balls, kind), options);
 }
 
 /// Tumbling boxes of 4 : 5 : 6 that fill the same part of the same room.
@@ -61,6 +84,12 @@ Model box_gas(std::size_t boxes) {
   return Model(parse_scene(text, "boxes"));
 }
 
+/// The memory that is allocated now, bytes.
+double memory_now() {
+  const struct mallinfo2 info = mallinfo2();
+  return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
+}
+
 /// The most memory that the process has held so far, bytes.
 double most_memory() {
   rusage usage{};
@@ -73,15 +102,20 @@ class Watch : public Recorder {
  public:
   void event(const Event& event) override { least_gap = std::min(least_gap, event.contact.gap); }
   void frame(const Frame& frame) override {
-    const double now = frame.ledger.kinetic();
-    first = first > 0.0 ? first : now;
-    energy_error = now / first - 1.0;
+    const EnergyLedger& ledger = frame.ledger;
+    const double now = ledger.kinetic() + ledger.potential();
+    if (!first) {
+      first = now;
+      kinetic = ledger.kinetic();
+    }
+    energy_error = (now - *first) / kinetic;
   }
   double least_gap = std::numeric_limits<double>::infinity();  ///< m
-  double energy_error = 0.0;  ///< of the kinetic energy, as a part of it
+  double energy_error = 0.0;  ///< of all, as a part of the kinetic energy at the start
 
  private:
-  double first = 0.0;
+  std::optional<double> first;
+  double kinetic = 0.0;
 };
 
 struct GasRun {
@@ -109,6 +143,61 @@ void run_once(const Model& model, double duration, GasRun& run) {
                  static_cast<double>(std::max<std::int64_t>(run.impacts, 1));
   run.least_gap = watch.least_gap;
   run.energy_error = watch.energy_error;
+}
+
+/// How long such a gas runs, s: `rounds_each` times a ball goes some diameters, and at least so
+/// long that there is enough to be timed.
+double duration_of(std::size_t balls, double part = fraction) {
+  // A ball has some 1 / (2 r) impacts a second at this fraction, its speed being about 1.6 m/s.
+  const double r = radius_of(balls);
+  const double a_second = 0.25 * static_cast<double>(balls) / r * (part / fraction);
+  return std::max(8.0 * r * (fraction / part), least_impacts / a_second);
+}
+
+/// Watches what the frames of a run take.
+class Upkeep : public Recorder {
+ public:
+  void frame(const Frame& frame) override {
+    (void)frame;
+    if (++frames == counted_from) {
+      first = processor_seconds();
+    }
+    last = processor_seconds();
+    memory = std::max(memory, memory_now());
+  }
+  [[nodiscard]] double a_frame() const { return (last - first) / (frames - counted_from); }
+
+  double memory = 0.0;  ///< the most that was allocated, bytes
+
+ private:
+  static constexpr int counted_from = 3;  // what is made once is made by then
+  int frames = 0;
+  double first = 0.0;
+  double last = 0.0;
+};
+
+/// What a gas takes beside its impacts: to be read, to be kept, to be drawn.
+void print_upkeep(std::size_t balls) {
+  const auto n = static_cast<double>(balls);
+  const double before = memory_now();
+  const double start = processor_seconds();
+  Scene scene = gas_scene(balls);
+  const double read = processor_seconds();
+  const Model model(std::move(scene));
+  const double built = processor_seconds();
+  const double kept = memory_now() - before;
+
+  Upkeep upkeep;
+  // So short that next to nothing strikes.
+  constexpr double frames = 40.0;
+  const double duration = 1e-4 * radius_of(balls);
+  (void)simulate(model, {.frames = FixedFrames{duration / frames}, .duration = duration}, upkeep);
+  fmt::print(
+      "  {:>9} a ball takes {:.2f} us to be read and {:.2f} us in the model, {:.0f} bytes there "
+      "and "
+      "{:.0f} in the run, {:.0f} ns a frame\n",
+      balls, 1e6 * (read - start) / n, 1e6 * (built - read) / n, kept / n,
+      (upkeep.memory - kept - before) / n, 1e9 * upkeep.a_frame() / n);
 }
 
 /// The balls that a model has, without its walls.
@@ -162,6 +251,26 @@ void print_halves(std::size_t balls, double duration, const GasRun& run, double 
           static_cast<double>(std::max<std::int64_t>(halves.across(), 1)));
 }
 
+void print_row(std::size_t bodies, std::string_view name, const GasRun& run,
+               const std::string& last) {
+  fmt::print("  {:>9} {:<14}{:>10}{:>14.1f}{:>14.2f}{:>17.3f}{:>13.1e}{:>14}{:>10.1e}\n", bodies,
+             name, run.impacts, 1e-3 * static_cast<double>(run.impacts) / run.seconds, run.queries,
+             run.seconds / run.simulated, run.least_gap, last, run.energy_error);
+}
+
+/// The gases that are not plain, of so many balls, in turn.
+void print_kinds(std::size_t balls, int rounds) {
+  std::array<GasRun, kinds.size()> runs;
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+      run_once(gas(balls, "cells", kinds[k]), duration_of(balls, kinds[k].part), runs[k]);
+    }
+  }
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    print_row(balls, kinds[k].name, runs[k], "");
+  }
+}
+
 void print_boxes(std::size_t boxes, int rounds) {
   constexpr double least_box_impacts = 4000.0;
   const auto n = static_cast<double>(boxes);
@@ -171,15 +280,13 @@ void print_boxes(std::size_t boxes, int rounds) {
     const Model model = box_gas(boxes);
     run_once(model, std::max(least_box_impacts, n) / a_second, run);
   }
-  fmt::print("  {:>9} {:<14}{:>10}{:>14.1f}{:>14.2f}{:>17.3f}{:>13.1e}{:>14.1f}{:>10.1e}\n", boxes,
-             "cells", run.impacts, 1e-3 * static_cast<double>(run.impacts) / run.seconds,
-             run.queries, run.seconds / run.simulated, run.least_gap, run.segments,
-             run.energy_error);
+  print_row(boxes, "cells", run, fmt::format("{:.1f}", run.segments));
 }
 
 }  // namespace
 
-void bench_gas(std::vector<std::size_t> counts, const std::vector<std::size_t>& boxes, int rounds) {
+void bench_gas(std::vector<std::size_t> counts, const std::vector<std::size_t>& boxes, int rounds,
+               bool with_kinds) {
   std::sort(counts.begin(), counts.end());
   fmt::print(
       "A gas of hard balls, fraction {}, from impact to impact, proven; processor time, the least "
@@ -189,10 +296,7 @@ void bench_gas(std::vector<std::size_t> counts, const std::vector<std::size_t>& 
   const double hand_over = std::thread::hardware_concurrency() > 1 ? hand_over_seconds() : 0.0;
   const double before = most_memory();
   for (const std::size_t balls : counts) {
-    // A ball has some 1 / (2 r) impacts a second at this fraction, its speed being about 1.6 m/s.
-    const double r = radius_of(balls);
-    const double a_second = 0.25 * static_cast<double>(balls) / r;
-    const double duration = std::max(8.0 * r, least_impacts / a_second);
+    const double duration = duration_of(balls);
     constexpr std::size_t too_many_for_a_tree = 10'000;
     std::vector<std::string_view> names{"cells"};
     if (balls <= too_many_for_a_tree) {
@@ -210,12 +314,12 @@ void bench_gas(std::vector<std::size_t> counts, const std::vector<std::size_t>& 
       }
     }
     for (std::size_t k = 0; k < names.size(); ++k) {
-      const GasRun& run = runs[k];
-      fmt::print("  {:>9} {:<14}{:>10}{:>14.1f}{:>14.2f}{:>17.3f}{:>13.1e}{:>14}{:>10.1e}\n", balls,
-                 names[k], run.impacts, 1e-3 * static_cast<double>(run.impacts) / run.seconds,
-                 run.queries, run.seconds / run.simulated, run.least_gap,
-                 k == 0 ? fmt::format("{:.0f}", bytes) : "", run.energy_error);
+      print_row(balls, names[k], runs[k], k == 0 ? fmt::format("{:.0f}", bytes) : "");
     }
+    if (with_kinds) {
+      print_kinds(balls, rounds);
+    }
+    print_upkeep(balls);
     print_halves(balls, duration, runs.front(), hand_over);
     constexpr std::size_t too_many_for_ode = 10'000;
     if (balls <= too_many_for_ode) {

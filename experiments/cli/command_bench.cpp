@@ -25,6 +25,7 @@ struct BenchCommand {
   std::size_t pairs = std::size_t{1} << 18;  // more than a branch predictor learns
   std::vector<std::size_t> balls{64, 512, 4096};
   std::vector<std::size_t> boxes{64, 512};
+  bool kinds = false;
   AccuracyOptions accuracy;
 
   void run() const {
@@ -36,7 +37,7 @@ struct BenchCommand {
       return;
     }
     if (name == "gas") {
-      bench_gas(balls, boxes, rounds);
+      bench_gas(balls, boxes, rounds, kinds);
       return;
     }
     if (name == "contact") {
@@ -98,6 +99,9 @@ void add_bench_command(Command& app) {
       .check(whole_number(2, 10'000'000))
       .type_name("N...")
       .capture_default_str();
+  bench.add_flag(
+      "--kinds", options->kinds,
+      "gas: also under gravity, of radii from 1 to 2, of both, and at a fraction of .49");
   AccuracyOptions& accuracy = options->accuracy;
   bench.add_option("--queries", accuracy.queries, "accuracy: how many")
       .check(whole_number(1, 1'000'000'000))
