@@ -36,7 +36,8 @@ class Sliding {
   };
   [[nodiscard]] Try along(double angle) const {
     Try t;
-    t.direction = {cosine(angle), sine(angle)};
+    const SineCosine of = sine_cosine(angle);
+    t.direction = {of.cosine, of.sine};
     const double felt = W_(0, 0) - mu_ * (W_(0, 1) * t.direction[0] + W_(0, 2) * t.direction[1]);
     t.possible = felt > 0.0;
     t.normal = t.possible ? -q_[0] / felt : 0.0;
@@ -47,11 +48,19 @@ class Sliding {
     return t;
   }
 
-  /// The solution with an angle in [from, to], where `across` changes its sign, if there is one.
-  [[nodiscard]] std::optional<Vector3> between(double from, double to) const {
-    Try low = along(from);
-    const Try high = along(to);
-    if (!low.possible || !high.possible || low.across * high.across > 0.0) {
+  /// An angle, and what sliding along it comes to.
+  struct End {
+    double angle = 0.0;
+    Try there;
+  };
+  [[nodiscard]] End at(double angle) const { return {angle, along(angle)}; }
+
+  /// The solution with an angle between the two, where `across` changes its sign, if there is one.
+  [[nodiscard]] std::optional<Vector3> between(const End& first, const End& last) const {
+    double from = first.angle;
+    double to = last.angle;
+    Try low = first.there;
+    if (!low.possible || !last.there.possible || low.across * last.there.across > 0.0) {
       return std::nullopt;
     }
     Try middle = low;
@@ -60,6 +69,9 @@ class Sliding {
       middle = along(angle);
       if (!middle.possible) {
         return std::nullopt;
+      }
+      if (angle == from || angle == to) {
+        break;  // no number is between the two
       }
       if (low.across * middle.across <= 0.0) {
         to = angle;
@@ -142,23 +154,30 @@ Vector3 coulomb_impulse(const Matrix3& W, const Vector3& q, double mu) {
   const Sliding sliding(W, q, mu);
   // The direction of sliding is mostly near that which sticking would have to hold: try it first.
   const double guess = std::isnan(stick[0]) ? 0.0 : arc_tangent(-stick[2], -stick[1]);
+  Sliding::End left = sliding.at(guess);
+  Sliding::End right = left;
   double reach = 0.0;
   for (double step = 1e-3; reach < M_PI; step *= 2.0) {
-    const double next = std::min(reach + step, M_PI);
-    for (const auto& [from, to] :
-         {std::pair{guess + reach, guess + next}, std::pair{guess - next, guess - reach}}) {
-      if (const auto found = sliding.between(from, to)) {
-        return *found;
-      }
-    }
-    reach = next;
-  }
-  constexpr int parts = 256;
-  for (int k = 0; k < parts; ++k) {
-    const double width = 2.0 * M_PI / parts;
-    if (const auto found = sliding.between(k * width, (k + 1) * width)) {
+    reach = std::min(reach + step, M_PI);
+    const Sliding::End beyond_right = sliding.at(guess + reach);
+    if (const auto found = sliding.between(right, beyond_right)) {
       return *found;
     }
+    const Sliding::End beyond_left = sliding.at(guess - reach);
+    if (const auto found = sliding.between(beyond_left, left)) {
+      return *found;
+    }
+    right = beyond_right;
+    left = beyond_left;
+  }
+  constexpr int parts = 256;
+  Sliding::End from = sliding.at(0.0);
+  for (int k = 0; k < parts; ++k) {
+    const Sliding::End to = sliding.at((k + 1) * (2.0 * M_PI / parts));
+    if (const auto found = sliding.between(from, to)) {
+      return *found;
+    }
+    from = to;
   }
   return smooth;
 }
