@@ -39,7 +39,7 @@ void print_head() {
       "creep", "strays", "jump", "gains");
 }
 
-/// Whether all is right.
+/// Whether all is right; told another friction than there is, whether that was found out.
 bool judge_scene(const std::string& name, const Scene& scene, const Arguments& args) {
   RunChoice choice;
   if (args.duration > 0.0) {
@@ -75,6 +75,9 @@ bool judge_scene(const std::string& name, const Scene& scene, const Arguments& a
     fmt::print("  {}: {}\n", to_string(fault), n);
   }
   std::fflush(stdout);
+  if (args.look.friction != 1.0L) {
+    return counts.contains(judge::Fault::forces);  // the judge was told what is not so
+  }
   return v.right();
 }
 
@@ -101,6 +104,8 @@ int main(int argc, char** argv) {
       args.random = value();
     } else if (key == "--self-check") {
       return judge::self_check() == 0 ? 0 : 1;
+    } else if (key == "--at") {
+      args.look.only_at = std::stod(value());
     } else if (key == "--told") {
       args.told = true;
     } else {

@@ -189,9 +189,13 @@ void check_motions(Check& check) {
                [](Case& c) { c.look = 0.99; });
   check.caught(resting_box(), Fault::forces, "on a slope that is too steep",
                [](Case& c) { c.friction = 0.25; });
-  for (const Case& c : {sliding_box(), resting_box(), sliding_ball(), rolling_ball()}) {
+  check.caught(resting_box(), Fault::forces, "accelerated by 1e-4 g",
+               [](Case& d) { d.along += 1e-4 * g; });
+  for (const Case& c : {sliding_box(), sliding_ball(), rolling_ball()}) {
     check.caught(c, Fault::forces, "accelerated by 1e-7 g more",
                  [](Case& d) { d.along += 1e-7 * g; });
+  }
+  for (const Case& c : {sliding_box(), resting_box(), sliding_ball(), rolling_ball()}) {
     check.caught(c, Fault::forces, "held at 1e-7 m", [](Case& d) { d.height += 1e-7; });
     check.caught(c, Fault::overlap, "sunk in by 1e-12 m", [](Case& d) { d.height -= 1e-12; });
     check.caught(c, Fault::strays, "its velocity is not its own", [](Case& d) {

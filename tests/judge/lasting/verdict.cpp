@@ -13,6 +13,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <set>
 #include <utility>
 
 namespace kairos::judge {
@@ -24,6 +25,10 @@ namespace {
 constexpr Real margin = 1e-8L;
 /// Points that part or approach faster, as a part of the speed of a fall by the size, do not press.
 constexpr Real at_rest = 1e-7L;
+/// The same where steps are implicit, and so of first order.
+constexpr Real at_rest_in_step = 1e-2L;
+/// Velocities are put right at the end of a step by up to so much of that speed.
+constexpr Real put_right = 1e-10L;
 /// What slides slower than this, in the same units, may be about to stop or begin: where friction
 /// is not against the slide, but in its cone, that is counted and no fault.
 constexpr Real slow = 1e-4L;
@@ -88,6 +93,9 @@ class Judge {
 
   /// Random times, and some of each leg between events, in order.
   [[nodiscard]] std::vector<Instant> instants() const {
+    if (look_.only_at >= 0) {
+      return {Instant{} + look_.only_at};
+    }
     Random random(look_.seed, 0x6c617374);
     std::vector<Instant> out;
     for (int k = 0; k < look_.times; ++k) {
@@ -204,14 +212,19 @@ class Judge {
     }
     while (next_event_ < run_.events().size() && run_.events()[next_event_].time <= t) {
       const Event& event = run_.events()[next_event_++];
-      if (changes_contact(event.kind)) {
-        grade_[ordered(event.a, event.b)] = event.grade;
+      if (changes_contact(event.kind) && event.grade == Grade::stepped) {
+        stepped_over_.insert(ordered(event.a, event.b));
       }
     }
     loads_at(t);
     look_at_pairs(t);
     look_at_groups(t);
     look_at_energy(t);
+  }
+
+  /// How long the motion of a body lasts, s.
+  [[nodiscard]] Real lasts(BodyIndex i, Instant t) const {
+    return Real(motion_at(run_, i, t).duration);
   }
 
   [[nodiscard]] Real smaller(BodyIndex a, BodyIndex b) const {
@@ -239,6 +252,9 @@ class Judge {
         const Real scale = at_[a].position.norm() + at_[b].position.norm() + ra + rb;
         if (-found.gap > hidden * scale) {
           find(Fault::overlap, t, -found.gap, names(a, b));
+        }
+        if (look_.only_at >= 0 && found.gap <= 1e3L * margin * smaller(a, b)) {
+          fmt::print("  {}: gap {:.3g} m\n", names(a, b), static_cast<double>(found.gap));
         }
         for (const TouchPoint& point : found.points) {
           Vector v = at_[b].at(point.at) + belt(b) - at_[a].at(point.at) - belt(a);
@@ -304,19 +320,41 @@ class Judge {
     const Real fall = std::sqrt(a * size);
     // Rounding of velocities: what is at rest to each other may be fast.
     const Real unit = std::max(fall, fastest * Real(1e-8));
+    Real step = std::numeric_limits<Real>::infinity();  // s, the shortest of the motions
     for (const BodyIndex i : bodies) {
       const Moment& at = at_[i];
-      const Real astray =
-          std::max(at.strays.norm(), std::holds_alternative<Box>(model_.shape(i))
-                                         ? at.turns_astray.norm() * reach(model_.shape(i))
-                                         : 0);
-      note(Fault::strays, t, astray, std::max(fall, fastest), verdict_.strays, look_.allowed.strays,
-           model_.body(i).name);
+      const bool is_box = std::holds_alternative<Box>(model_.shape(i));
+      const Real r = reach(model_.shape(i));
+      const Real astray = std::max(at.strays.norm(), is_box ? at.turns_astray.norm() * r : 0);
+      const Real until = lasts(i, t);
+      step = std::min(step, until);
+      // What this is off by the end of the motion, or when the body has fallen by its size.
+      const Real speed = std::max(fall, fastest);
+      note(Fault::strays, t, speed > 0 ? astray * std::min(until, size / speed) : 0, r,
+           verdict_.strays, look_.allowed.strays, model_.body(i).name);
+    }
+    const bool stepped = std::any_of(presses.begin(), presses.end(), [&](const Press& p) {
+      return stepped_over_.contains(ordered(p.a, p.b));
+    });
+    if (look_.only_at >= 0) {
+      for (const Press& p : presses) {
+        fmt::print("  {}: parts at {:.3g} m/s, slides at {:.3g} m/s; 1 is {:.3g} m/s\n",
+                   names(p.a, p.b), static_cast<double>(p.point.normal.dot(p.slip)),
+                   static_cast<double>(along_of(p).norm()), static_cast<double>(unit));
+      }
+      for (const BodyIndex i : bodies) {
+        const Vector& v = at_[i].acceleration;
+        fmt::print(
+            "  {}: accelerates by {:.6g} {:.6g} {:.6g} m/s^2, motion of {:.3g} s begun {:.3g} s "
+            "before\n",
+            model_.body(i).name, static_cast<double>(v.x()), static_cast<double>(v.y()),
+            static_cast<double>(v.z()), motion_at(run_, i, t).duration,
+            static_cast<double>(seconds(motion_at(run_, i, t).start, t)));
+      }
     }
     std::erase_if(presses, [&](const Press& p) {
-      return std::abs(p.point.normal.dot(p.slip)) > at_rest * unit;
+      return std::abs(p.point.normal.dot(p.slip)) > (stepped ? at_rest_in_step : at_rest) * unit;
     });
-    bool stepped = false;
     std::vector<ForceSet> sets;
     std::map<BodyIndex, Eigen::Index> place;
     Eigen::Index rows = 0;
@@ -325,8 +363,6 @@ class Judge {
       rows += 6;
     }
     for (const Press& p : presses) {
-      const auto grade = grade_.find(ordered(p.a, p.b));
-      stepped = stepped || (grade != grade_.end() && grade->second == Grade::stepped);
       sets.push_back(force_set(p, unit, place, rows));
     }
     if (stepped) {
@@ -339,7 +375,8 @@ class Judge {
     ConeFit found = fit(sets, needed);
     BodyIndex who = bodies[0];
     Real worst = worst_of(bodies, found, who);
-    if (worst > look_.allowed.forces * a) {
+    const Real allowed = look_.allowed.forces + put_right * fall / (a * step);
+    if (worst > allowed * a) {
       bool any = false;
       for (std::size_t k = 0; k < sets.size(); ++k) {
         if (sets[k].friction > 0 && !sets[k].ray.isZero(0) &&
@@ -361,7 +398,7 @@ class Judge {
       }
     }
     note(Fault::forces, t, worst, a, stepped ? verdict_.in_steps : verdict_.forces,
-         stepped ? look_.allowed.stepped : look_.allowed.forces,
+         stepped ? look_.allowed.stepped : allowed,
          fmt::format("'{}' of {} with {} points{}", model_.body(who).name, bodies.size(),
                      sets.size(), stepped ? " (stepped)" : ""));
   }
@@ -512,7 +549,7 @@ class Judge {
   bool steady_ = true;  ///< energy cannot come from anywhere
   Real before_ = std::numeric_limits<Real>::quiet_NaN();
   std::size_t next_event_ = 0;
-  std::map<Pair, Grade> grade_;
+  std::set<Pair> stepped_over_;  ///< so far: which steps are implicit is not told one by one
   std::vector<Moment> at_;
   std::vector<Vector> force_;
   std::vector<Vector> torque_;

@@ -32,8 +32,8 @@ struct Finding {
 /// What is allowed. All are parts of scales of the instant: see tests/judge/README.md.
 struct Allowed {
   Real forces = 1e-8L;   ///< of the largest acceleration of the group
-  Real stepped = 1e-8L;  ///< the same in implicit steps
-  Real strays = 1e-8L;   ///< of the speed of a fall by the size of the largest body
+  Real stepped = 1e-2L;  ///< the same where some two of the group were stepped over
+  Real strays = 1e-9L;   ///< of the size of the body, by the end of a motion
   Real jump = 1e-8L;     ///< of the same
   Real gains = 1e-12L;   ///< of all energy that flowed
 };
@@ -44,7 +44,8 @@ struct Look {
   int of_each_leg = 1;   ///< and as many between every two events
   int most_legs = 2000;  ///< of which so many are looked at, evenly
   std::uint64_t seed = 1;
-  Real friction = 1;  ///< factor of all coefficients: another than 1 must be found out
+  Real friction = 1;    ///< factor of all coefficients: another than 1 must be found out
+  double only_at = -1;  ///< s; not negative: look at this instant alone, and tell of it
   Allowed allowed;
 };
 
