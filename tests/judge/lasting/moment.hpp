@@ -10,13 +10,12 @@ struct Moment {
   Vector position;
   Matrix turned;  ///< columns: the body's axes in the world
   Vector velocity;
-  Vector spin;            ///< angular velocity, world frame, rad/s
-  Vector acceleration;    ///< derivative of `velocity`, m/s^2
-  Vector spinning_up;     ///< derivative of `spin`, rad/s^2
-  Vector strays;          ///< derivative of `position` less `velocity`, m/s
-  Vector turns_astray;    ///< rate of `turned` less `spin`, rad/s
-  Real beyond = 0;        ///< s; how long ago the motion ended
-  bool implicit = false;  ///< not known here; set by who knows
+  Vector spin;          ///< angular velocity, world frame, rad/s
+  Vector acceleration;  ///< derivative of `velocity`, m/s^2
+  Vector spinning_up;   ///< derivative of `spin`, rad/s^2
+  Vector strays;        ///< derivative of `position` less `velocity`, m/s
+  Vector turns_astray;  ///< rate of `turned` less `spin`, rad/s
+  Real beyond = 0;      ///< s; how long ago the motion ended
 
   /// Velocity of its material point at x, m/s.
   [[nodiscard]] Vector at(const Vector& x) const { return velocity + spin.cross(x - position); }

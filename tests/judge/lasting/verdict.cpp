@@ -320,6 +320,9 @@ class Judge {
     const Real fall = std::sqrt(a * size);
     // Rounding of velocities: what is at rest to each other may be fast.
     const Real unit = std::max(fall, fastest * Real(1e-8));
+    const bool stepped = std::any_of(presses.begin(), presses.end(), [&](const Press& p) {
+      return stepped_over_.contains(ordered(p.a, p.b));
+    });
     Real step = std::numeric_limits<Real>::infinity();  // s, the shortest of the motions
     for (const BodyIndex i : bodies) {
       const Moment& at = at_[i];
@@ -331,26 +334,11 @@ class Judge {
       // What this is off by the end of the motion, or when the body has fallen by its size.
       const Real speed = std::max(fall, fastest);
       note(Fault::strays, t, speed > 0 ? astray * std::min(until, size / speed) : 0, r,
-           verdict_.strays, look_.allowed.strays, model_.body(i).name);
+           verdict_.strays, stepped ? look_.allowed.strays_in_step : look_.allowed.strays,
+           model_.body(i).name);
     }
-    const bool stepped = std::any_of(presses.begin(), presses.end(), [&](const Press& p) {
-      return stepped_over_.contains(ordered(p.a, p.b));
-    });
     if (look_.only_at >= 0) {
-      for (const Press& p : presses) {
-        fmt::print("  {}: parts at {:.3g} m/s, slides at {:.3g} m/s; 1 is {:.3g} m/s\n",
-                   names(p.a, p.b), static_cast<double>(p.point.normal.dot(p.slip)),
-                   static_cast<double>(along_of(p).norm()), static_cast<double>(unit));
-      }
-      for (const BodyIndex i : bodies) {
-        const Vector& v = at_[i].acceleration;
-        fmt::print(
-            "  {}: accelerates by {:.6g} {:.6g} {:.6g} m/s^2, motion of {:.3g} s begun {:.3g} s "
-            "before\n",
-            model_.body(i).name, static_cast<double>(v.x()), static_cast<double>(v.y()),
-            static_cast<double>(v.z()), motion_at(run_, i, t).duration,
-            static_cast<double>(seconds(motion_at(run_, i, t).start, t)));
-      }
+      tell(t, bodies, presses, unit);
     }
     std::erase_if(presses, [&](const Press& p) {
       return std::abs(p.point.normal.dot(p.slip)) > (stepped ? at_rest_in_step : at_rest) * unit;
@@ -401,6 +389,24 @@ class Judge {
          stepped ? look_.allowed.stepped : allowed,
          fmt::format("'{}' of {} with {} points{}", model_.body(who).name, bodies.size(),
                      sets.size(), stepped ? " (stepped)" : ""));
+  }
+
+  /// What is seen of a group, for people.
+  void tell(Instant t, const std::vector<BodyIndex>& bodies, const std::vector<Press>& presses,
+            Real unit) const {
+    for (const Press& p : presses) {
+      fmt::print("  {}: parts at {:.3g} m/s, slides at {:.3g} m/s; 1 is {:.3g} m/s\n",
+                 names(p.a, p.b), static_cast<double>(p.point.normal.dot(p.slip)),
+                 static_cast<double>(along_of(p).norm()), static_cast<double>(unit));
+    }
+    for (const BodyIndex i : bodies) {
+      const Vector3 a = at_[i].acceleration.cast<double>();
+      const Motion& motion = motion_at(run_, i, t);
+      fmt::print(
+          "  '{}' accelerates by {:.6g} {:.6g} {:.6g} m/s^2, {:.3g} of {:.3g} s on its way\n",
+          model_.body(i).name, a.x(), a.y(), a.z(), static_cast<double>(seconds(motion.start, t)),
+          motion.duration);
+    }
   }
 
   /// Of what is left of the accelerations, m/s^2, and whose it is.

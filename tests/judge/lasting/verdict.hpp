@@ -31,11 +31,12 @@ struct Finding {
 
 /// What is allowed. All are parts of scales of the instant: see tests/judge/README.md.
 struct Allowed {
-  Real forces = 1e-8L;   ///< of the largest acceleration of the group
-  Real stepped = 1e-2L;  ///< the same where some two of the group were stepped over
-  Real strays = 1e-9L;   ///< of the size of the body, by the end of a motion
-  Real jump = 1e-8L;     ///< of the same
-  Real gains = 1e-12L;   ///< of all energy that flowed
+  Real forces = 1e-8L;          ///< of the largest acceleration of the group
+  Real stepped = 1e-2L;         ///< the same where some two of the group were stepped over
+  Real strays = 1e-9L;          ///< of the size of the body, by the end of a motion
+  Real strays_in_step = 1e-6L;  ///< the same where some two of the group were stepped over
+  Real jump = 1e-8L;            ///< of the same
+  Real gains = 1e-12L;          ///< of all energy that flowed
 };
 
 /// How a run is looked at.
