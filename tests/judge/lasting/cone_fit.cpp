@@ -27,9 +27,12 @@ class Fit {
       begin(k);
     }
     solve();
-    while (static_cast<int>(rays_.size()) < most_rays &&
+    int stalls = 0;
+    while (static_cast<int>(rays_.size()) < most_rays && stalls < 3 &&
            left_.norm() > 64 * rounding * asked_.norm() && add_rays()) {
+      const Real before = left_.norm();
       solve();
+      stalls = left_.norm() > (1 - 1e-6L) * before ? stalls + 1 : 0;
     }
     ConeFit found{std::vector<Vector>(sets_.size(), Vector::Zero()), left_,
                   static_cast<int>(rays_.size())};
