@@ -38,15 +38,20 @@ std::array<std::pair<std::size_t, double>, 2> sides(const FrictionTouch& t) {
 }  // namespace
 
 FrictionForces::FrictionForces(const ContactGroup& group) : group_(group) {
+  double lightest = 0.0;  // 1/kg
   for (std::size_t i = 0; i < group.bodies.size(); ++i) {
     load_ = std::max(
         load_, group.loads[i].linear.norm() + group.loads[i].angular.norm() * group.radius[i]);
     first_.push_back(unknowns_);
     balance_.push_back(balances_);
     if (moves(group.bodies[i])) {
+      lightest = std::max(lightest, group.bodies[i].inverse_mass);
       unknowns_ += turns(i) ? 6 : 3;
       balances_ += can_turn(i) ? 6 : 3;
     }
+  }
+  if (lightest > 0.0) {
+    unit_ = std::ldexp(1.0, std::ilogb(lightest));
   }
 }
 
@@ -89,10 +94,10 @@ VectorXd FrictionForces::row(const FrictionTouch& t, const Vector3& d) const {
     if (!moves(body)) {
       continue;
     }
-    out.segment<3>(first_[i]) = sign * std::sqrt(body.inverse_mass) * d;
+    out.segment<3>(first_[i]) = sign * std::sqrt(body.inverse_mass / unit_) * d;
     if (turns(i)) {
       out.segment<3>(first_[i] + 3) =
-          sign * std::sqrt(body.inverse_inertia(0, 0)) * arm(t, i, point).cross(d);
+          sign * std::sqrt(body.inverse_inertia(0, 0) / unit_) * arm(t, i, point).cross(d);
     }
   }
   return out;
@@ -135,9 +140,9 @@ Twist FrictionForces::scaled(std::size_t i, const VectorXd& z) const {
   const GroupBody& body = group_.bodies[i];
   Twist out;
   if (moves(body)) {
-    out.linear = std::sqrt(body.inverse_mass) * z.segment<3>(first_[i]);
+    out.linear = std::sqrt(body.inverse_mass / unit_) * z.segment<3>(first_[i]);
     if (turns(i)) {
-      out.angular = std::sqrt(body.inverse_inertia(0, 0)) * z.segment<3>(first_[i] + 3);
+      out.angular = std::sqrt(body.inverse_inertia(0, 0) / unit_) * z.segment<3>(first_[i] + 3);
     }
   }
   return out;

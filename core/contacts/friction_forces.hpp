@@ -92,6 +92,8 @@ class FrictionForces {
 
   const ContactGroup& group_;
   double load_ = 0.0;
+  double unit_ = 1.0;  ///< of inverse masses, a power of two near the greatest, 1/kg: roots of what
+                       ///< remains are the same whatever unit masses are told in
   int solves_ = 0;
   Eigen::Index unknowns_ = 0;
   std::vector<Eigen::Index> first_;  ///< by body: of its unknowns
