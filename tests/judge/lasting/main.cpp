@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <exception>
 #include <map>
 #include <string>
 #include <vector>
@@ -81,9 +82,13 @@ bool judge_scene(const std::string& name, const Scene& scene, const Arguments& a
   return v.right();
 }
 
-}  // namespace
+constexpr const char* usage =
+    "usage: judge_contact SCENE... [--times N] [--duration S] [--seed N] [--at S] [--friction F] "
+    "[--told]\n"
+    "       judge_contact --random rough|touching --seed N [--first N] [--count N] ...\n"
+    "       judge_contact --self-check\n";
 
-int main(int argc, char** argv) {
+int judge_all(int argc, char** argv) {
   Arguments args;
   for (int k = 1; k < argc; ++k) {
     const std::string key = argv[k];
@@ -108,6 +113,9 @@ int main(int argc, char** argv) {
       args.look.only_at = std::stod(value());
     } else if (key == "--told") {
       args.told = true;
+    } else if (key == "--help") {
+      fmt::print("{}", usage);
+      return 0;
     } else {
       args.scenes.push_back(key);
     }
@@ -126,4 +134,15 @@ int main(int argc, char** argv) {
   }
 #endif
   return wrong == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return judge_all(argc, argv);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "judge_contact: {}\n{}", error.what(), usage);
+    return 2;
+  }
 }
