@@ -2,7 +2,6 @@
 
 #include "core/contacts/implicit_mode.hpp"
 
-#include "core/contacts/contact_sweeps.hpp"
 #include "core/random.hpp"
 #include "tests/catch.hpp"
 
@@ -116,29 +115,4 @@ TEST_CASE("implicit step: impulses are within their cones, and take energy from 
     // Some 20 N act at some .05 m/s; what sweeps leave is 1e-10 of both.
     CHECK(work <= 1e-7 * h);
   }
-}
-
-// What is asked for is below what doubles can tell of these velocities: sweeps that no longer get
-// nearer end, where they have got, and not after all that are allowed.
-TEST_CASE("sweeps of touches end where they change what rounding does", "[implicit]") {
-  std::vector<Vector3> speeds;
-  for (int i = 0; i < 3; ++i) {
-    speeds.emplace_back(1.0 / (i + 3.0), -0.1 * (i + 1.0), 0.7 / (i + 1.0));
-  }
-  const TurningState state = blocks(speeds, 0.3);
-  std::vector<SweptTouch> touches;
-  std::vector<ContactSweeps::Vector6> velocities(state.bodies.size());
-  for (std::size_t i = 0; i < state.bodies.size(); ++i) {
-    velocities[i] << state.states[i].twist.linear, state.states[i].twist.angular;
-  }
-  for (const Touch& touch : state.touches) {
-    const Vector3 point = state.states[touch.b].pose.position + touch.on_b.at;
-    touches.push_back({touch.a, touch.b, touch.normal, point, point, touch.friction});
-  }
-  const ContactSweeps sweeps(state.bodies, touches);
-  constexpr double unreachable = 1e-19;  // m/s; a half ulp of the least of these speeds is 7e-18
-  const auto swept = sweeps.sweep(velocities, {}, {}, unreachable, true);
-  CHECK(swept.changed > unreachable);
-  CHECK(swept.changed < 1e-15);
-  CHECK(swept.solves < 1000 * static_cast<int>(touches.size()));
 }

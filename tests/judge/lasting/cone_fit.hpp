@@ -24,7 +24,7 @@ struct ConeFit {
 
 /// The forces within their sets that come nearest to what is asked for. Rays of the round cones are
 /// made as they are needed, each the one that the rest pulls most (a fully corrective Frank-Wolfe
-/// method), and weights are found by Lawson and Hanson's active sets [Lawson1995, ch. 23]: exact
+/// method), and weights are found by Lawson and Hanson's active sets [Lawson1974, ch. 23]: exact
 /// for the round cone, in long double.
 [[nodiscard]] ConeFit fit(const std::vector<ForceSet>& sets, const Column& asked);
 
