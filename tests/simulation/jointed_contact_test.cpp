@@ -1,13 +1,11 @@
 // Contact that lasts of bodies that hang on joints, in event-driven runs: joints and contacts are
 // solved for together.
 
-#include "core/joint_system.hpp"
 #include "core/reading/scene_reader.hpp"
-#include "simulation/penetration.hpp"
 #include "simulation/simulate.hpp"
 #include "tests/catch.hpp"
 #include "tests/simulation/events.hpp"
-#include "tests/simulation/ledger_check.hpp"
+#include "tests/simulation/whole_run.hpp"
 
 #include <fmt/format.h>
 
@@ -46,34 +44,6 @@ std::string box(const std::string& name, const Vector3& x, double e) {
 
 Simulation run(const std::string& text) { return simulate(parse_scene(text, "test.toml"), {}); }
 
-/// It ends, the ledger closes, and in no frame do bodies overlap or joints open.
-void check_whole(const Simulation& sim, const std::string& text) {
-  INFO(sim.result.reason);
-  REQUIRE(sim.result.status == RunStatus::completed);
-  tests::check_explained(sim.result.ledger);
-  const Model model(parse_scene(text, "test.toml"));
-  const PenetrationProbe probe(model);
-  double open = 0.0;
-  std::vector<BodyState> states;
-  for (std::size_t k = 0; k < sim.trajectory.frame_times().size(); ++k) {
-    CHECK_FALSE(probe.first(sim.trajectory.frame_state(k)));
-    for (const Island& island : model.islands()) {
-      if (island.joints == nullptr) {
-        continue;
-      }
-      states.clear();
-      for (const BodyIndex i : island.bodies) {
-        states.push_back(sim.trajectory.frame_state(k)[i]);
-      }
-      open = std::max(open, island.joints->residual(sim.trajectory.frame_times()[k], states));
-    }
-  }
-  // Frames are within steps, whose own error is some 1e-12.
-  CHECK(open < 1e-10);
-  // What is left of motion is truncation of steps: a small part of all that flowed.
-  CHECK(std::abs(sim.result.ledger.line(EnergyLine::truncation)) < 1e-9 * sim.result.ledger.flow());
-}
-
 }  // namespace
 
 TEST_CASE("jointed contact: two balls on a rod turn on the floor", "[turning][joints]") {
@@ -86,7 +56,7 @@ TEST_CASE("jointed contact: two balls on a rod turn on the floor", "[turning][jo
                            ball("far", middle + half, drift + spins) +
                            "[[joint]]\nkind = \"rod\"\nbodies = [\"near\", \"far\"]\n";
   const Simulation sim = run(text);
-  check_whole(sim, text);
+  tests::check_whole(sim, text);
   const Vector3 arm = 0.25 * Vector3(std::cos(2.0 * omega), 0.0, -std::sin(2.0 * omega));
   CHECK((sim.result.state[1].pose.position - (middle + 2.0 * drift - arm)).norm() < 1e-9);
   CHECK((sim.result.state[2].pose.position - (middle + 2.0 * drift + arm)).norm() < 1e-9);
@@ -114,7 +84,7 @@ TEST_CASE("jointed contact: a ladder of two balls leaves its wall at 2/3 of its 
       ball("low", {r + 0.5, r, 0.0}, Vector3::Zero()) +
       "[[joint]]\nkind = \"rod\"\nbodies = [\"high\", \"low\"]\n";
   const Simulation sim = run(text);
-  check_whole(sim, text);
+  tests::check_whole(sim, text);
   const auto ends = tests::of_kind(sim.trajectory, EventKind::contact_ends);
   REQUIRE(ends.size() == 1);
   // A force that vanishes is found with the square of what it turns with: forces are off by 1e-11.
@@ -138,7 +108,7 @@ TEST_CASE("jointed contact: bars on hinges come down on the floor and slide out"
         "[[joint]]\nkind = \"hinge\"\nbodies = [\"upper\", \"lower\"]\nanchor = [0.4, 0.55, 0]\n"
         "axis = [0, 0, 1]\n";
     const Simulation sim = run(text);
-    check_whole(sim, text);
+    tests::check_whole(sim, text);
     CHECK_FALSE(tests::of_kind(sim.trajectory, EventKind::contact_begins).empty());
   }
 }
@@ -153,7 +123,7 @@ TEST_CASE("jointed contact: a bar on a hinge falls on a box and pushes it away",
       "[[joint]]\nkind = \"hinge\"\nbodies = [\"bar\"]\nanchor = [0, 0.42, 0]\n"
       "axis = [0, 0, 1]\n";
   const Simulation sim = run(text);
-  check_whole(sim, text);
+  tests::check_whole(sim, text);
   CHECK(sim.result.state[1].twist.linear.x() >= 0.0);
 }
 
@@ -201,7 +171,7 @@ TEST_CASE("jointed contact: what hangs from a driven slider rests on the floor",
                            cube("block", 0.0, 0.1, 0.1, 2.0, swing * w) +
                            joint("slider", "block", 0.1);
   const Simulation sim = run(text);
-  check_whole(sim, text);
+  tests::check_whole(sim, text);
   const BodyState& block = sim.result.state[2];
   CHECK(block.pose.position.x() == Approx(swing * std::sin(w * end)).margin(1e-9));
   CHECK(block.twist.linear.x() == Approx(swing * w * std::cos(w * end)).margin(1e-9));
@@ -218,7 +188,7 @@ TEST_CASE("jointed contact: what is welded to a driver pushes a box until it is 
       head(end) + driver(0.5, -0.5 * M_PI) + cube("pusher", -swing, 0.11, 0.1, 2.0, 0.0) +
       cube("box", -swing + 0.2, 0.1, 0.1, 3.0, 0.0) + joint("weld", "pusher", 0.0);
   const Simulation sim = run(text);
-  check_whole(sim, text);
+  tests::check_whole(sim, text);
   bool parted = false;
   for (const Event& event : tests::of_kind(sim.trajectory, EventKind::contact_ends)) {
     if (std::max(event.a, event.b) == 3) {
@@ -255,7 +225,7 @@ TEST_CASE("jointed contact: an impact on what a driver pushes is passed on to th
     RunChoice choice;
     choice.method.impact = impact;
     const Simulation sim = simulate(parse_scene(text, "test.toml"), choice);
-    check_whole(sim, text);
+    tests::check_whole(sim, text);
     const auto impacts = tests::of_kind(sim.trajectory, EventKind::impact);
     REQUIRE_FALSE(impacts.empty());
     CHECK(impacts[0].time.seconds == Approx(meets).margin(1e-9));
@@ -281,7 +251,7 @@ TEST_CASE("jointed contact: a bar on a driven hinge comes to rest on the floor a
             e, swing * w) +
         joint("hinge", "bar", 0.4);
     const Simulation sim = run(text);
-    check_whole(sim, text);
+    tests::check_whole(sim, text);
     CHECK_FALSE(tests::of_kind(sim.trajectory, EventKind::contact_begins).empty());
     CHECK(std::abs(sim.result.ledger.line(EnergyLine::driven_work)) > 1e-3);
   }

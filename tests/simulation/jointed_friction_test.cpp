@@ -1,14 +1,13 @@
 // Friction of bodies that hang on joints, in event-driven runs: against closed forms, and against
 // equations of motion in the fewest coordinates, which know nothing of contacts and joints.
 
-#include "core/joint_system.hpp"
 #include "core/reading/scene_reader.hpp"
-#include "simulation/penetration.hpp"
 #include "simulation/scene_library.hpp"
 #include "simulation/simulate.hpp"
 #include "tests/catch.hpp"
 #include "tests/simulation/events.hpp"
 #include "tests/simulation/ledger_check.hpp"
+#include "tests/simulation/whole_run.hpp"
 
 #include <fmt/format.h>
 
@@ -71,35 +70,12 @@ Simulation run(const std::string& text, const std::string& impact = "newton") {
   return simulate(parse_scene(text, "test.toml"), choice);
 }
 
-/// It ends, the ledger closes, friction takes, and in no frame do bodies overlap or joints open.
+/// It ends whole, and friction takes.
 void check_whole(const Simulation& sim, const std::string& text) {
-  INFO(sim.result.reason);
-  REQUIRE(sim.result.status == RunStatus::completed);
+  tests::check_whole(sim, text);
   const EnergyLedger& ledger = sim.result.ledger;
-  tests::check_explained(ledger);
   CHECK(ledger.line(EnergyLine::friction) <= 0.0);
   CHECK(ledger.line(EnergyLine::impact_friction) <= 0.0);
-  const Model model(parse_scene(text, "test.toml"));
-  const PenetrationProbe probe(model);
-  double open = 0.0;
-  std::vector<BodyState> states;
-  for (std::size_t k = 0; k < sim.trajectory.frame_times().size(); ++k) {
-    CHECK_FALSE(probe.first(sim.trajectory.frame_state(k)));
-    for (const Island& island : model.islands()) {
-      if (island.joints == nullptr) {
-        continue;
-      }
-      states.clear();
-      for (const BodyIndex i : island.bodies) {
-        states.push_back(sim.trajectory.frame_state(k)[i]);
-      }
-      open = std::max(open, island.joints->residual(sim.trajectory.frame_times()[k], states));
-    }
-  }
-  // Frames are within steps, whose own error is some 1e-12.
-  CHECK(open < 1e-10);
-  // What is left of motion is truncation of steps: a small part of all that flowed.
-  CHECK(std::abs(ledger.line(EnergyLine::truncation)) < 1e-9 * ledger.flow());
 }
 
 /// About z.

@@ -2,11 +2,10 @@
 // runs, against closed forms.
 
 #include "core/reading/scene_reader.hpp"
-#include "simulation/penetration.hpp"
 #include "simulation/simulate.hpp"
 #include "tests/catch.hpp"
 #include "tests/simulation/events.hpp"
-#include "tests/simulation/ledger_check.hpp"
+#include "tests/simulation/whole_run.hpp"
 
 #include <fmt/format.h>
 
@@ -43,16 +42,7 @@ std::string spring(double stiffness, double length, double damping = 0.0) {
 
 Simulation run(const std::string& text) {
   const Simulation sim = simulate(parse_scene(text, "test.toml"), {});
-  INFO(sim.result.reason);
-  REQUIRE(sim.result.status == RunStatus::completed);
-  tests::check_explained(sim.result.ledger);
-  const Model model(parse_scene(text, "test.toml"));
-  const PenetrationProbe probe(model);
-  for (std::size_t k = 0; k < sim.trajectory.frame_times().size(); ++k) {
-    CHECK_FALSE(probe.first(sim.trajectory.frame_state(k)));
-  }
-  // What is left of motion is truncation of steps: a small part of all that flowed.
-  CHECK(std::abs(sim.result.ledger.line(EnergyLine::truncation)) < 1e-9 * sim.result.ledger.flow());
+  tests::check_whole(sim, text);
   return sim;
 }
 

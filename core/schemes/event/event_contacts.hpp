@@ -59,6 +59,7 @@ class EventContacts {
     void persist(Archive& archive);
   };
 
+  [[nodiscard]] static Event impact_in(BodyIndex a, BodyIndex b, Instant t, double bracket);
   [[nodiscard]] bool impact_of_balls(BodyIndex a, BodyIndex b, Instant t, double bracket);
   [[nodiscard]] bool is_wall(BodyIndex i) const;
   [[nodiscard]] Contact contact_of_balls(const Event& event, const PlainBall* ball_a,

@@ -6,6 +6,18 @@
 namespace kairos {
 inline namespace core {
 
+/// How much is tried with groups that turn.
+struct TurningLimits {
+  /// So many short steps in a row get nowhere.
+  static constexpr int most_short_steps = 1500;
+  /// After so many of them steps are implicit: what slides turns its direction, or stops, within
+  /// what such a step cannot tell.
+  static constexpr int few_short_steps = 50;
+  /// Forces at an instant are looked for of so many free bodies that turn: of more they are found
+  /// too slowly.
+  static constexpr std::ptrdiff_t most_bodies = 24;
+};
+
 /// A group that turns, as it is settled.
 struct EventModes::Turning {
   TurningGroup group;

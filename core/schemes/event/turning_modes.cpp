@@ -1,5 +1,4 @@
 // What `EventModes` does with groups whose bodies turn while they touch.
-#include "core/contacts/implicit_mode.hpp"
 #include "core/contacts/jam.hpp"
 #include "core/schemes/event/gathered_group.hpp"
 #include "core/schemes/event/mode_guards.hpp"
@@ -22,27 +21,10 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double least_gap = 1.0 / 16.0;
 /// Infinite friction: as this, so that what is hardly pressed any more may slide.
 constexpr double rough = 1e8;
-/// Steps that are shorter than this part of a frame, so many in a row, get nowhere.
+/// Steps that are shorter than this part of a frame are short: see `TurningLimits`.
 constexpr double short_step = 1e-4;
-constexpr int most_short_steps = 1500;
-/// After so many of them steps are implicit: what slides turns its direction, or stops, within what
-/// such a step cannot tell.
-constexpr int few_short_steps = 50;
-/// A body that turns has so many steps in a frame at most, and so many in which forces are those of
-/// an instant.
+/// A body that turns has so many steps in a frame at most.
 constexpr int most_steps = 4000;
-constexpr int most_exact_steps = 500;
-/// Forces at an instant are looked for of so many free bodies that turn: of more they are found too
-/// slowly.
-constexpr std::ptrdiff_t most_bodies = 24;
-/// An implicit step takes this part of a frame at most, and so many follow each other before forces
-/// at an instant are looked for again: twice as many each time that there are none.
-constexpr double implicit_part = 1.0 / 16.0;
-constexpr int first_stretch = 16;
-constexpr int longest_stretch = 1024;
-constexpr int most_halvings = 30;
-/// What ends a step after less than this part of it strikes at once.
-constexpr double least_part = 1e-9;
 
 std::vector<BodyState> free_states(const TurningGroup& group) {
   std::vector<BodyState> states;
@@ -131,7 +113,7 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
   if (!completes(found, jump, asked, &turning)) {
     return false;
   }
-  if (!turning.mode.implicit && short_steps(found) > most_short_steps) {
+  if (!turning.mode.implicit && short_steps(found) > TurningLimits::most_short_steps) {
     why_not_ = "what begins to slide, or stops, turns its direction faster than steps can follow";
     return false;
   }
@@ -170,7 +152,8 @@ void EventModes::find_forces(const Gathered& found, Turning& turning, Instant t)
   }
   const double roundoff = 64.0 * epsilon * fastest;
   // On joints, short steps make no implicit ones: slip that the loads make within one is none.
-  const bool short_on_joints = has_joints(found) && short_steps(found) / few_short_steps % 2 != 0;
+  const bool short_on_joints =
+      has_joints(found) && short_steps(found) / TurningLimits::few_short_steps % 2 != 0;
   const double instant = short_on_joints
                              ? std::max(found.group.instant, short_step * run_.mean_frame)
                              : found.group.instant;
@@ -190,77 +173,6 @@ void EventModes::find_forces(const Gathered& found, Turning& turning, Instant t)
   if (!turning.mode.refusal.empty()) {
     turning.group = all;
   }
-}
-
-/// Whether forces are not even looked for: there were none lately, or too many bodies turn, or what
-/// slides makes steps too short.
-bool EventModes::goes_on_implicitly(const Gathered& found, Instant t) const {
-  if (has_joints(found)) {
-    return false;
-  }
-  const double frame = std::floor(t.seconds / run_.mean_frame);
-  const auto free = std::count_if(found.bodies.begin(), found.bodies.end(),
-                                  [&](BodyIndex i) { return run_.model.is_free(i); });
-  return free > most_bodies || short_steps(found) >= few_short_steps ||
-         implicit_steps(found).first > 0 ||
-         std::any_of(found.bodies.begin(), found.bodies.end(), [&](BodyIndex i) {
-           return has_turned_[i].frame == frame && has_turned_[i].steps >= most_exact_steps;
-         });
-}
-
-/// Of the pairs of a group, the most: implicit steps that are left, and those made last.
-std::pair<int, int> EventModes::implicit_steps(const Gathered& found) const {
-  std::pair<int, int> most{0, 0};
-  for (const auto& [a, b] : found.pairs) {
-    if (const Patch* const patch = graph_.find(a, b)) {
-      most.first = std::max(most.first, patch->implicit_steps);
-      most.second = std::max(most.second, patch->stretch);
-    }
-  }
-  return most;
-}
-
-/// Steps over what forces at an instant are not known of: with forces that act all through a step,
-/// which is as short as it takes to keep gaps. False, and why not, where none is.
-bool EventModes::step_over(const Gathered& found, Turning& turning, Instant t,
-                           bool pressed_or_not) {
-  turning.all = pressed_or_not;
-  const std::string exactly = turning.mode.refusal;
-  std::vector<Vector3> warm;
-  for (const Touch& touch : turning.group.start.touches) {
-    const auto& [a, b] = found.pairs[touch.pair];
-    const Patch* const patch = graph_.find(a, b);
-    const std::size_t point = touch.point;
-    warm.push_back(patch != nullptr && point < patch->force.size() ? patch->force[point]
-                                                                   : Vector3(Vector3::Zero()));
-  }
-  const double frame = run_.options.step > 0.0 ? run_.options.step : run_.mean_frame;
-  const double before = implicit_steps(found).second > 0 ? next_step(found) : frame;
-  double h = std::min({implicit_part * frame, run_.epoch_end() - t, before});
-  bool halved = false;
-  for (int round = 0; round < most_halvings; ++round, h *= 0.5, halved = true) {
-    turning.mode = implicit_mode(turning.group.start, h, warm);
-    turning.mode.keeps_all = turning.all;
-    run_.cost.contact_solves += turning.mode.solves;
-    if (!turning.mode.refusal.empty()) {
-      break;
-    }
-    if (turning.mode.flies && !turning.all) {
-      return true;
-    }
-    const std::unique_ptr<Stepper> stepper = stepper_(h);
-    turning.step = turning_step(turning.group, turning.mode, *stepper, t, h);
-    turning.step.halved = turning.step.halved || halved;
-    const bool made = turning.step.refusal.empty() && turning.step.duration > least_part * h;
-    if (made && short_steps(found) <= most_short_steps) {
-      return true;
-    }
-  }
-  why_not_ = exactly.empty() ? turning.mode.refusal : exactly;
-  if (why_not_.empty()) {
-    why_not_ = "a corner of a body in touch is to strike at once";
-  }
-  return false;
 }
 
 /// Gathers what touches, with gaps that can be held. Where that brings one nearer to what passes
@@ -298,8 +210,9 @@ bool EventModes::has_turned(std::span<const BodyIndex> bodies) const {
 std::string EventModes::why_not_turn(const Gathered& found, Instant t) const {
   const auto free = std::count_if(found.bodies.begin(), found.bodies.end(),
                                   [&](BodyIndex i) { return run_.model.is_free(i); });
-  if (free > most_bodies && has_joints(found)) {
-    return fmt::format("more than {} bodies on joints that touch each other turn", most_bodies);
+  if (free > TurningLimits::most_bodies && has_joints(found)) {
+    return fmt::format("more than {} bodies on joints that touch each other turn",
+                       TurningLimits::most_bodies);
   }
   const double frame = std::floor(t.seconds / run_.mean_frame);
   for (const BodyIndex i : found.bodies) {
@@ -757,38 +670,6 @@ void EventModes::carry_on(const Gathered& found, const Turning& turning, Instant
     run_.agenda.push(end, DueKind::impact, a, b, 0.0, true);
   }
   end_together(found, mode, end, strikes ? &found.pairs[turning.step.pair] : nullptr);
-}
-
-/// How a pair goes on stepping over what forces are not known of: a stretch of such steps begins,
-/// or goes on; `left` of it there were.
-void EventModes::count_implicit(const Turning& turning, const std::pair<int, int>& left,
-                                bool is_short, Patch& patch) {
-  if (!turning.mode.implicit) {
-    patch.stretch = is_short ? left.second : 0;
-    patch.implicit_steps = 0;
-    return;
-  }
-  const bool begins = left.first == 0;
-  patch.stretch = !begins           ? left.second
-                  : left.second > 0 ? std::min(2 * left.second, longest_stretch)
-                                    : first_stretch;
-  patch.implicit_steps = begins ? patch.stretch - 1 : left.first - 1;
-}
-
-/// The next implicit step begins its search with the forces of this one.
-void EventModes::keep_forces(const Gathered& found, const Turning& turning) {
-  for (std::size_t p = 0; p < found.pairs.size(); ++p) {
-    if (Patch* const patch = graph_.find(found.pairs[p].first, found.pairs[p].second)) {
-      patch->force.assign(found.group.patches[p].manifold.size, Vector3::Zero());
-    }
-  }
-  for (std::size_t k = 0; k < turning.group.start.touches.size(); ++k) {
-    const Touch& touch = turning.group.start.touches[k];
-    Patch* const patch = graph_.find(found.pairs[touch.pair].first, found.pairs[touch.pair].second);
-    if (patch != nullptr && touch.point < patch->force.size()) {
-      patch->force[touch.point] = turning.mode.forces.force[k];
-    }
-  }
 }
 
 /// What hangs together is looked at again at `end`. Where a strike ends the step that comes first,
