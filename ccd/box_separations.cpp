@@ -1,6 +1,5 @@
 #include "ccd/relative_boxes.hpp"
 #include "ccd/rounding/roundoff.hpp"
-#include "core/circular.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -155,26 +154,6 @@ bool overlap_by_faces(const Operands& o, double faces) {
   return 4.0 * (std::sqrt(least) + 16.0 * unit_roundoff) * size < -faces - o.error;
 }
 
-/// Nearly parallel edges i of a and j of b: the separation along their cross product, made unit. In
-/// the frame of a that has two entries of column j, so that it is as exact as these, however small.
-bool edges_apart(const RelativeBoxes& s, int i, int j, double error) {
-  const int k = (i + 1) % 3;
-  const int l = (i + 2) % 3;
-  const double x = -s.axes_A(l, j);
-  const double y = s.axes_A(k, j);
-  const double size = std::max(std::abs(x), std::abs(y));
-  if (!(size > 0.0)) {
-    return false;
-  }
-  const double length = hypotenuse(x / size, y / size);
-  Vector3 n = Vector3::Zero();
-  n[k] = x / size / length;
-  n[l] = y / size / length;
-  const Vector3 along_b = s.axes_A.transpose() * n;
-  return std::abs(n.dot(s.d_A)) - s.half_a.dot(n.cwiseAbs()) - s.half_b.dot(along_b.cwiseAbs()) >
-         error;
-}
-
 /// Is a face apart by more than `face`, or a pair of edges by more than the error?
 KAIROS_INLINE bool apart_beyond(const RelativeBoxes& boxes, const Operands& o, double face) {
   Bits apart{};
@@ -207,7 +186,7 @@ KAIROS_INLINE bool apart_beyond(const RelativeBoxes& boxes, const Operands& o, d
       const double y = o.axis[j][(i + 2) % 3];
       const double square = x * x + y * y;
       if (square >= needed * needed && square < small_sine * small_sine &&
-          edges_apart(boxes, i, j, o.error)) {
+          unit_edge_separation(boxes, 6 + 3 * i + j).gap() > o.error) {
         return true;
       }
     }

@@ -100,7 +100,7 @@ Overlap measure(const Box& box, const Pose& pose_b, const HalfSpace& half_space,
 
 Overlap measure(const Box& a, const Pose& pose_a, const Box& b, const Pose& pose_b) {
   const RelativeBoxes s(a, pose_a, b, pose_b);
-  const AxisSeparation axis = greatest_separation(s);
+  const AxisSeparation axis = sharpened(s, greatest_separation(s));
   Overlap answer;
   answer.overlapping = boxes_overlap(s);
   answer.gap = axis.gap();

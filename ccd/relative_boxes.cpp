@@ -1,6 +1,7 @@
 #include "ccd/relative_boxes.hpp"
 
 #include "ccd/rounding/roundoff.hpp"
+#include "core/circular.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -61,6 +62,48 @@ AxisSeparation axis_separation(const RelativeBoxes& s, int axis) {
       (s.half_a[e.k] * std::abs(y) + s.half_a[e.l] * std::abs(x)) +
       (s.half_b[e.m] * std::abs(R(e.i, e.n)) + s.half_b[e.n] * std::abs(R(e.i, e.m)));
   return {axis, std::abs(along) - extent, std::sqrt(x * x + y * y), along < 0.0 ? -1.0 : 1.0};
+}
+
+AxisSeparation unit_edge_separation(const RelativeBoxes& s, int axis) {
+  const EdgePair e(axis);
+  // In the frame of a the direction has two entries of an axis of b, so that it is as exact as
+  // these, however small.
+  const double x = -s.axes_A(e.l, e.j);
+  const double y = s.axes_A(e.k, e.j);
+  const double size = std::max(std::abs(x), std::abs(y));
+  constexpr double none = 1e-200;  // their length times a separation is to be no subnormal number
+  if (!(size > none)) {
+    return {axis, -infinity};
+  }
+  const double length = hypotenuse(x / size, y / size);
+  Vector3 n = Vector3::Zero();
+  n[e.k] = x / size / length;
+  n[e.l] = y / size / length;
+  const Vector3 along_b = s.axes_A.transpose() * n;
+  const double along = n.dot(s.d_A);
+  const double gap =
+      std::abs(along) - s.half_a.dot(n.cwiseAbs()) - s.half_b.dot(along_b.cwiseAbs());
+  return {axis, gap * (size * length), size * length, along < 0.0 ? -1.0 : 1.0};
+}
+
+AxisSeparation sharpened(const RelativeBoxes& s, const AxisSeparation& greatest) {
+  constexpr double small_sine = 0.05;
+  const bool noisy = greatest.length < small_sine;
+  if (!noisy && greatest.gap() > 64.0 * s.error()) {
+    return greatest;
+  }
+  AxisSeparation best = noisy ? axis_separation(s, 0) : greatest;
+  for (int axis = 1; noisy && axis < 6; ++axis) {
+    const AxisSeparation face = axis_separation(s, axis);
+    best = face.gap() > best.gap() ? face : best;
+  }
+  for (int axis = 6; axis < axis_count; ++axis) {
+    const AxisSeparation edges = unit_edge_separation(s, axis);
+    if (edges.length < small_sine || noisy) {
+      best = edges.gap() - s.error() > best.gap() ? edges : best;
+    }
+  }
+  return best;
 }
 
 Vector3 axis_normal(const RelativeBoxes& s, const AxisSeparation& axis) {

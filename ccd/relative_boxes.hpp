@@ -43,6 +43,10 @@ struct AxisSeparation {
 
 /// Separation along one axis, 0 <= `axis` < `axis_count`.
 [[nodiscard]] AxisSeparation axis_separation(const RelativeBoxes& boxes, int axis);
+/// Separation along an axis of two edges, 6 <= `axis` < `axis_count`, computed along the unit
+/// direction: where edges are nearly parallel the rounding of `axis_separation` is divided by their
+/// sine, and of this it is that of any separation. Minus infinity: they are parallel.
+[[nodiscard]] AxisSeparation unit_edge_separation(const RelativeBoxes& boxes, int axis);
 /// The axis of greatest separation. An edge pair competes with its separation lowered by the
 /// rounding error before it is normalised: nearly parallel edges, whose cross product is noise,
 /// can never win, and no angle has to be called "parallel".
@@ -51,6 +55,10 @@ struct AxisSeparation {
 [[nodiscard]] AxisSeparation greatest_separation(const Vector3& half_a, const Matrix3& R_WA,
                                                  const Vector3& half_b, const Matrix3& R_WB,
                                                  const Vector3& d_W);
+/// The greatest separation where nearly parallel edges are asked as `unit_edge_separation` does:
+/// known to the rounding error of any. `greatest`: as `greatest_separation` tells it, which stays
+/// where no such edges can decide.
+[[nodiscard]] AxisSeparation sharpened(const RelativeBoxes& boxes, const AxisSeparation& greatest);
 /// Unit normal of an axis from a to b, in the frame of a.
 [[nodiscard]] Vector3 axis_normal(const RelativeBoxes& boxes, const AxisSeparation& axis);
 

@@ -14,6 +14,10 @@ constexpr int most_sweeps = 4000;
 /// After so many sweeps impulses change by half of what they would alone: what goes round in a
 /// circle comes to rest. They stay within their cones, which are convex.
 constexpr int damped_from = 1000;
+/// Sweeps that change less than this many times what has settled, and do not come to half of that
+/// in so many more, change what rounding does: others would do the same.
+constexpr double nearly_settled = 1e4;
+constexpr int idle_sweeps = 64;
 
 }  // namespace
 
@@ -53,6 +57,8 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
     along[k] = blocks_[k].axes * begin[k];
     push_along(blocks_[k], along[k], swept.velocities);
   }
+  double least = nearly_settled * settled;
+  int idle = 0;
   for (int round = 0; round < most_sweeps; ++round) {
     swept.changed = 0.0;
     swept.solves += static_cast<int>(blocks_.size());
@@ -70,6 +76,12 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
       along[k] += more;
     }
     if (swept.changed <= settled) {
+      break;
+    }
+    if (swept.changed <= 0.5 * least) {
+      least = swept.changed;
+      idle = 0;
+    } else if (swept.changed <= nearly_settled * settled && ++idle >= idle_sweeps) {
       break;
     }
   }

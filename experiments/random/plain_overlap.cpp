@@ -59,8 +59,9 @@ Real depth(const Box& box_a, const Pose& at_a, const Box& box_b, const Pose& at_
   const Vector d = b.centre - a.centre;
   Real least = std::numeric_limits<Real>::infinity();
   const auto look = [&](const Vector& axis) {
+    // Any axis along which they are apart proves it, however little edges are off being parallel.
     const Real length = axis.norm();
-    if (length > 1e-6L) {  // of parallel edges: what they would tell, faces do
+    if (length > 0) {
       const Vector n = axis / length;
       least = std::min(least, a.reach(n) + b.reach(n) - std::abs(n.dot(d)));
     }

@@ -1,6 +1,7 @@
 // Two boxes at one instant: all ways to ask agree, and what is proven is true.
 #include "ccd/box_batch.hpp"
 #include "ccd/nearest_points.hpp"
+#include "ccd/pair_overlap.hpp"
 #include "ccd/relative_boxes.hpp"
 #include "ccd/sine_cosine.hpp"
 #include "experiments/accuracy/random_query.hpp"
@@ -83,6 +84,72 @@ TEST_CASE("the greatest separation is the greatest of the fifteen", "[ccd][sat]"
     CHECK(again.length == Approx(best.length).margin(4 * u));
     CHECK(again.sign == best.sign);
   }
+}
+
+/// Of the fifteen axes, in long double, in the frame of a: there the product of two edges that are
+/// nearly parallel is at a right angle to that of a.
+double exact_gap(const Vector3& half_a, const Pose& at_a, const Vector3& half_b, const Pose& at_b) {
+  using Real = long double;
+  using Vector = Eigen::Matrix<Real, 3, 1>;
+  const auto to_a = at_a.orientation.cast<Real>().normalized().conjugate();
+  const Eigen::Matrix<Real, 3, 3> b =
+      (to_a * at_b.orientation.cast<Real>().normalized()).toRotationMatrix();
+  const Vector d = to_a * Vector(at_b.position.cast<Real>() - at_a.position.cast<Real>());
+  Real greatest = -std::numeric_limits<Real>::infinity();
+  const auto look = [&](const Vector& axis) {
+    if (axis.norm() > 0) {
+      const Vector n = axis.normalized();
+      const Real reach = half_a.cast<Real>().dot(n.cwiseAbs()) +
+                         half_b.cast<Real>().dot((b.transpose() * n).cwiseAbs());
+      greatest = std::max(greatest, std::abs(n.dot(d)) - reach);
+    }
+  };
+  for (int i = 0; i < 3; ++i) {
+    look(Vector::Unit(i));
+    look(b.col(i));
+    for (int j = 0; j < 3; ++j) {
+      look(Vector::Unit(i).cross(b.col(j)));
+    }
+  }
+  return static_cast<double>(greatest);
+}
+
+TEST_CASE("a gap between edges is told as exactly as any, however nearly parallel they are",
+          "[ccd][sat]") {
+  Random random(14);
+  int apart = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const Vector3 half_a(0.3, 0.2, random.uniform(0.2, 1.0));
+    const Vector3 half_b(0.25, 0.35, random.uniform(0.2, 1.0));
+    // In the frame of a, whose corner (x, y) looks along n; that of b looks back.
+    const double along = random.uniform(0.2, 1.3);
+    const Vector3 n(std::cos(along), std::sin(along), 0.0);
+    const double sine = random.log_uniform(1e-12, 1e-1);
+    const Quaternion turned =
+        rotate(n * sine, rotate(Vector3::UnitZ() * (along + random.uniform(-0.6, 0.6) + M_PI - 0.7),
+                                Quaternion::Identity()));
+    const double gap = random.log_uniform(1e-13, 1e-8) * (i % 2 == 0 ? 1.0 : -1.0);
+    const Vector3 corner_a(half_a.x(), half_a.y(), 0.0);
+    const Vector3 corner_b(half_b.x(), half_b.y(), 0.0);
+    const Quaternion q = random.orientation();
+    const Pose at_a = pose(random.vector(1.0), q);
+    const Pose at_b =
+        pose(at_a.position + q * Vector3(corner_a + gap * n - turned * corner_b), q * turned);
+    const double exact = exact_gap(half_a, at_a, half_b, at_b);
+    const Overlap told = ccd::measure_overlap(box(half_a.x(), half_a.y(), half_a.z()), at_a,
+                                              box(half_b.x(), half_b.y(), half_b.z()), at_b);
+    // Rounding of a separation is 24 u of a size of 3. The two points put together are no farther
+    // apart than the gap.
+    const double rounding = 72.0 * u;
+    INFO("pair " << i << ", sine " << sine << ", gap " << gap << ", exact " << exact << ", told "
+                 << told.gap);
+    CHECK(told.gap > exact - rounding);
+    CHECK(told.gap < std::max(exact, std::abs(gap)) + rounding);
+    CHECK((exact > 0.0 || told.gap < exact + rounding));
+    CHECK((exact < rounding || !told.overlapping));
+    apart += exact > 0.0 ? 1 : 0;
+  }
+  CHECK(apart > 1000);  // and not all overlap
 }
 
 TEST_CASE("a cached axis separates as long as it does, and is replaced when it does not",

@@ -270,6 +270,16 @@ TEST_CASE("the judge of all shapes knows depths that are known", "[random]") {
     CHECK(least <= exact * (1.0 + 1e-12));
     CHECK(least >= exact / 8.0);  // powers of four, and sqrt(3) for the octahedron
   }
+  // Edges 1e-7 off being parallel, 1e-11 m apart where faces are not: no overlap, which would be a
+  // false alarm.
+  const Shape post = Box{{0.1, 0.1, 0.5}};
+  const Vector3 n = Vector3(1.0, 1.0, 0.0).normalized();
+  const Vector3 corner(0.1, 0.1, 0.0);
+  for (const double gap : {1e-11, -1e-11}) {
+    const Quaternion q(Eigen::AngleAxisd(1e-7, n));
+    const Pose pose{corner + gap * n + q * corner, q};
+    CHECK(plain_depth(post, origin, post, pose) == Approx(std::max(-gap, 0.0)).epsilon(1e-4));
+  }
 }
 
 namespace {
