@@ -43,6 +43,9 @@ class ContactSweeps {
   [[nodiscard]] Swept sweep(std::vector<Vector6> velocities, std::span<const Vector3> rates,
                             std::span<const Vector3> begin, double settled, bool rubs) const;
 
+  /// From here on this touch has no friction.
+  void make_smooth(std::size_t touch) { blocks_[touch].friction = 0.0; }
+
   /// Rows: normal and tangents of a touch.
   [[nodiscard]] const Eigen::Matrix3d& axes(std::size_t touch) const { return blocks_[touch].axes; }
   /// Along these: velocity of b against a.

@@ -43,7 +43,7 @@ void hold_normals(const TurningState& state, TurningMode& mode) {
 FrictionChoice choice_of(const Touch& touch, const Vector3& normal, const Vector3& impulse,
                          const Vector3& rates, double least) {
   const double pressed = normal.dot(impulse);
-  if (!(pressed > 0.0)) {
+  if (!(pressed > 0.0) && !(touch.rough && !impulse.isZero(0.0))) {
     return {rates.x() <= least ? Does::slides : Does::opens, Vector3::Zero()};
   }
   if (touch.friction > 0.0 && (touch.rough || rates.tail<2>().norm() <= least)) {
@@ -51,6 +51,23 @@ FrictionChoice choice_of(const Touch& touch, const Vector3& normal, const Vector
   }
   const Vector3 along = impulse - pressed * normal;
   return {Does::slides, along.isZero(0.0) ? along : Vector3(-along.normalized())};
+}
+
+/// Friction without a bound holds along the surfaces what nothing presses. What parts all the same
+/// rubs no more: it goes on by itself, and the force of the step would act on the other alone.
+/// Whether some did.
+bool let_part(std::span<const SweptTouch> touches, const ContactSweeps::Swept& swept,
+              std::span<const Vector3> rates, double least, ContactSweeps& sweeps) {
+  bool any = false;
+  for (std::size_t k = 0; k < touches.size(); ++k) {
+    const bool pressed = touches[k].normal.dot(swept.impulse[k]) > 0.0;
+    if (!pressed && !swept.impulse[k].isZero(0.0) &&
+        (sweeps.rate(k, swept.velocities) + rates[k]).x() > least) {
+      sweeps.make_smooth(k);
+      any = true;
+    }
+  }
+  return any;
 }
 
 }  // namespace
@@ -72,7 +89,7 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
                        touch.rough ? std::numeric_limits<double>::infinity() : touch.friction});
     begin.push_back(k < warm.size() ? Vector3(h * warm[k]) : Vector3(Vector3::Zero()));
   }
-  const ContactSweeps sweeps(state.bodies, touches);
+  ContactSweeps sweeps(state.bodies, touches);
   std::vector<Vector6> velocities;
   double fastest = 0.0;
   for (std::size_t i = 0; i < state.bodies.size(); ++i) {
@@ -97,8 +114,12 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
   }
   const double scale =
       forces.load() * h + fastest * std::numeric_limits<double>::epsilon() / settled;
-  const auto swept = sweeps.sweep(std::move(velocities), rates, begin, settled * scale, true);
+  auto swept = sweeps.sweep(velocities, rates, begin, settled * scale, true);
   mode.solves = swept.solves;
+  while (let_part(touches, swept, rates, held * scale, sweeps)) {
+    swept = sweeps.sweep(velocities, rates, begin, settled * scale, true);
+    mode.solves += swept.solves;
+  }
   if (!(swept.changed <= accepted * scale)) {
     mode.refusal = "impulses of contacts were looked for touch by touch, and did not settle";
     return mode;

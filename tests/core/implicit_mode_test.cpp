@@ -155,3 +155,35 @@ TEST_CASE("implicit step: what changes by rounding alone has settled", "[implici
   // Sweeps come from a few tens to rounding, and 64 more show that they stay there.
   CHECK(most < 500);
 }
+
+// A force on a touch that opens would act on one of the two alone: the other goes on by itself.
+TEST_CASE("implicit step: what opens has no force, rough as it may be", "[implicit]") {
+  constexpr std::uint64_t seed = 20261125;
+  constexpr double h = 1e-3;
+  CAPTURE(seed);
+  Random random(seed);
+  int open = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    CAPTURE(trial);
+    TurningState state = blocks({Vector3::Zero(), Vector3::Zero()}, 1e8);
+    for (Touch& touch : state.touches) {
+      touch.rough = true;
+    }
+    for (std::size_t i = 1; i < state.loads.size(); ++i) {
+      state.loads[i].linear = Vector3(random.uniform(-9.0, 9.0), random.uniform(-9.0, 1.0), 0.0);
+      state.loads[i].angular = 100.0 * random.direction();
+      state.states[i].twist.linear = h * random.direction() * 9.0;
+    }
+    const TurningMode mode = implicit_mode(state, h, {});
+    if (!mode.refusal.empty()) {
+      continue;
+    }
+    for (std::size_t k = 0; k < state.touches.size(); ++k) {
+      if (mode.choices[k].does == Does::opens) {
+        CHECK(mode.forces.force[k].isZero(0.0));
+        ++open;
+      }
+    }
+  }
+  CHECK(open > 100);
+}
