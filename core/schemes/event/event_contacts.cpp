@@ -222,6 +222,38 @@ void EventContacts::touch(BodyIndex a, BodyIndex b, const Contact& contact, Inst
   relaunch(a, b, t);
 }
 
+/// Whether all that is as near as a patch of this gap, or comes so within the bracket, draws away:
+/// of convex bodies, which are near at one place only.
+bool EventContacts::parts_all_over(BodyIndex a, BodyIndex b, double gap, double bracket) const {
+  const BodyState& state_a = motions_.now(a);
+  const BodyState& state_b = motions_.now(b);
+  const Shape& shape_a = run_.model.shape(a);
+  const Shape& shape_b = run_.model.shape(b);
+  const auto has_parts = [](const Shape& shape) {
+    return std::holds_alternative<Mesh>(shape) || std::holds_alternative<Compound>(shape);
+  };
+  if (has_parts(shape_a) || has_parts(shape_b)) {
+    return false;
+  }
+  const auto speed = [](const BodyState& state, const Shape& shape) {
+    const double radius = bounding_radius(shape);
+    return std::isfinite(radius) ? state.twist.linear.norm() + state.twist.angular.norm() * radius
+                                 : 0.0;
+  };
+  const double fastest = speed(state_a, shape_a) + speed(state_b, shape_b);
+  const double reach = 2.0 * (std::max(gap, predictor_.touching_gap(a, b)) + fastest * bracket);
+  const ContactManifold near =
+      run_.detector.manifold(shape_a, state_a.pose, shape_b, state_b.pose, reach);
+  constexpr double still = 1e-9;  // of that: slower ones are not told from those that approach
+  for (std::size_t k = 0; k < near.size; ++k) {
+    const Contact point{near.points[k].position, near.normal, near.points[k].gap};
+    if (!(normal_velocity(point, state_a, state_b) > still * fastest)) {
+      return false;
+    }
+  }
+  return near.size > 0;
+}
+
 /// Where the two touch at t: at the centroid of the contact patch, or, if that does not approach,
 /// at the nearest points (one corner of several within tolerance).
 Contact EventContacts::contact_at(BodyIndex a, BodyIndex b, Instant t, double bracket) const {
@@ -230,7 +262,8 @@ Contact EventContacts::contact_at(BodyIndex a, BodyIndex b, Instant t, double br
   const Overlap o =
       run_.detector.overlap(run_.model.shape(a), state_a.pose, run_.model.shape(b), state_b.pose);
   const Contact patch{o.point, o.normal, o.gap};
-  if (normal_velocity(patch, state_a, state_b) < 0.0 || bracket <= 0.0) {
+  if (normal_velocity(patch, state_a, state_b) < 0.0 || bracket <= 0.0 ||
+      parts_all_over(a, b, patch.gap, bracket)) {
     return patch;
   }
   const TimeOfImpact toi = run_.detector.time_of_impact(motions_.moving(a), motions_.moving(b),

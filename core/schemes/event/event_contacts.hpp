@@ -106,6 +106,7 @@ class EventContacts {
                    const ContactSweeps::Swept& swept,
                    const std::vector<ContactSweeps::Vector6>& before);
   void set_free(std::span<const BodyIndex> bodies, Instant t);
+  [[nodiscard]] bool parts_all_over(BodyIndex a, BodyIndex b, double gap, double bracket) const;
   [[nodiscard]] Contact contact_at(BodyIndex a, BodyIndex b, Instant t, double bracket) const;
   void look_again(BodyIndex a, BodyIndex b, Instant t, double bracket);
   [[nodiscard]] double passes_by(BodyIndex a, BodyIndex b, Instant t) const;
