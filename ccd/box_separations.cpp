@@ -175,7 +175,6 @@ KAIROS_INLINE bool apart_beyond(const RelativeBoxes& boxes, const Operands& o, d
   }
   // A separation that nearly parallel edges hide in their error is at most 4 sine * size above that
   // of the faces.
-  constexpr double small_sine = 0.05;
   const double greatest =
       std::max({faces[0][0], faces[0][1], faces[0][2], faces[1][0], faces[1][1], faces[1][2]});
   const double size = o.error / (24.0 * unit_roundoff);

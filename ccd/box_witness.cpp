@@ -11,9 +11,6 @@ namespace {
 
 constexpr double u = unit_roundoff;
 
-/// Below this sine the separations of edges, whose error is that of a unit direction over the sine,
-/// are evaluated again along unit directions.
-constexpr double small_sine = 0.05;
 /// Boxes nearer than this part of their extents may touch along edges that the error hides.
 constexpr double near = 1e-3;
 

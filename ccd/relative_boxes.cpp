@@ -87,7 +87,6 @@ AxisSeparation unit_edge_separation(const RelativeBoxes& s, int axis) {
 }
 
 AxisSeparation sharpened(const RelativeBoxes& s, const AxisSeparation& greatest) {
-  constexpr double small_sine = 0.05;
   const bool noisy = greatest.length < small_sine;
   if (!noisy && greatest.gap() > 64.0 * s.error()) {
     return greatest;

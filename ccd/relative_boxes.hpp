@@ -31,6 +31,10 @@ struct RelativeBoxes {
 /// i of a and edge j of b (unnormalised) [Gottschalk1996].
 inline constexpr int axis_count = 15;
 
+/// Below this sine the separations of edges, whose error is that of a unit direction over the sine,
+/// are evaluated again along unit directions.
+inline constexpr double small_sine = 0.05;
+
 /// Signed separation of the boxes along one axis and the axis itself.
 struct AxisSeparation {
   int axis = 0;

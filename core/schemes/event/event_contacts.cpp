@@ -229,22 +229,18 @@ bool EventContacts::parts_all_over(BodyIndex a, BodyIndex b, double gap, double 
   const BodyState& state_b = motions_.now(b);
   const Shape& shape_a = run_.model.shape(a);
   const Shape& shape_b = run_.model.shape(b);
-  const auto has_parts = [](const Shape& shape) {
-    return std::holds_alternative<Mesh>(shape) || std::holds_alternative<Compound>(shape);
-  };
-  if (has_parts(shape_a) || has_parts(shape_b)) {
+  if (modes_.has_parts(a) || modes_.has_parts(b)) {
     return false;
   }
   const auto speed = [](const BodyState& state, const Shape& shape) {
-    const double radius = bounding_radius(shape);
-    return std::isfinite(radius) ? state.twist.linear.norm() + state.twist.angular.norm() * radius
-                                 : 0.0;
+    const double turning = state.twist.angular.norm();  // a half-space that turns is nowhere slow
+    return state.twist.linear.norm() + (turning > 0.0 ? turning * bounding_radius(shape) : 0.0);
   };
   const double fastest = speed(state_a, shape_a) + speed(state_b, shape_b);
   const double reach = 2.0 * (std::max(gap, predictor_.touching_gap(a, b)) + fastest * bracket);
   const ContactManifold near =
       run_.detector.manifold(shape_a, state_a.pose, shape_b, state_b.pose, reach);
-  constexpr double still = 1e-9;  // of that: slower ones are not told from those that approach
+  constexpr double still = 1e-9;  // what draws away slower than this part may as well approach
   for (std::size_t k = 0; k < near.size; ++k) {
     const Contact point{near.points[k].position, near.normal, near.points[k].gap};
     if (!(normal_velocity(point, state_a, state_b) > still * fastest)) {

@@ -58,6 +58,11 @@ class EventModes {
                             const SettleOptions& options);
   [[nodiscard]] const std::string& why_not() const { return why_not_; }
 
+  /// Whether it is of parts that others may touch at several places: a mesh or a compound.
+  [[nodiscard]] bool has_parts(BodyIndex i) const {
+    const Shape& shape = run_.model.shape(i);
+    return std::holds_alternative<Mesh>(shape) || std::holds_alternative<Compound>(shape);
+  }
   /// Whether contact forces hold this free body.
   [[nodiscard]] bool holds(BodyIndex i) const {
     return run_.model.is_free(i) && (graph_.holds(i) || (hangs_and_touches(i) && holds_island(i)));

@@ -62,10 +62,8 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
   Gathered found;
   Turning turning;
   if (!make_room(seeds, t, options, found, turning)) {
-    const bool of_parts = std::any_of(found.bodies.begin(), found.bodies.end(), [&](BodyIndex i) {
-      const Shape& shape = run_.model.shape(i);
-      return std::holds_alternative<Mesh>(shape) || std::holds_alternative<Compound>(shape);
-    });
+    const bool of_parts = std::any_of(found.bodies.begin(), found.bodies.end(),
+                                      [&](BodyIndex i) { return has_parts(i); });
     if (of_parts && !flat.empty()) {
       why_not_ = flat + "; meshes and compounds are kept in touch at faces only";
     }
