@@ -25,7 +25,7 @@ double magnitude(const Polynomial<Dim>& p, double reach, int first) {
   for (int k = p.degree(); k >= first; --k) {
     sum = sum * reach + p[k].norm();
   }
-  return sum * power(reach, first);
+  return first == 0 ? sum : sum * power(reach, first);
 }
 
 /// Bound of the rounding error of every Bernstein coefficient on [s0, s1]: a Taylor shift, a
@@ -253,6 +253,10 @@ template <int Dim>
 void bernstein(const Polynomial<Dim>& p, double s0, double s1,
                std::array<typename Polynomial<Dim>::Value, Polynomial<Dim>::max_degree + 1>& out) {
   const int n = p.degree();
+  if (s1 == s0) {
+    std::fill_n(out.begin(), n + 1, p(s0));
+    return;
+  }
   const Polynomial<Dim> shifted = s0 == 0.0 ? p : p.shifted(s0);
   // Scaled to [0, 1] and divided by C(n, k): b_j = sum_k C(j, k) a_k [Farouki2012, sec. 2.4].
   double scale = 1.0;
