@@ -37,6 +37,8 @@ constexpr double out_of_touch = 8.0;
 constexpr int most_steps_back = 200;
 /// Halvings of an interval in which the gap is least.
 constexpr int most_halvings = 60;
+/// They end where the gap changes by so many errors at most in what is left.
+constexpr double level_gap = 0x1p-6;
 
 /// How far ahead a gap within roundoff is first looked at, s: the time to cover `length` (m) at
 /// `speed` (m/s), and never so little that the doublings would not reach the end of the window.
@@ -63,7 +65,11 @@ std::optional<double> overlap_between(PairLooks& pair, double low, double high) 
     if (pair.overlap_proven(there)) {
       return middle;
     }
-    (pair.approach(there) > 0.0 ? low : high) = middle;
+    const double rate = pair.approach(there);
+    if (std::abs(rate) * (high - low) <= level_gap * there.k.error) {
+      break;
+    }
+    (rate > 0.0 ? low : high) = middle;
   }
   return std::nullopt;
 }

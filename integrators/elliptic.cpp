@@ -12,12 +12,16 @@ namespace {
 
 // Truncation errors of the series below: relative, far under roundoff [Carlson1995, eq. 2.4].
 constexpr double series_error = 1e-18;
+// How close the arguments have to be to their mean for that, from eqs. 2.4, 2.13 and 2.19.
+const double reach_of_rc = power(3.0 * series_error, -1.0 / 8.0);
+const double reach_of_rf = power(3.0 * series_error, -1.0 / 6.0);
+const double reach_of_rj = power(0.25 * series_error, -1.0 / 6.0);
 
 /// R_C(x, y) = R_F(x, y, y), x >= 0, y > 0 [Carlson1995, eqs. 2.12 to 2.18].
 double carlson_rc(double x, double y) {
   double mean = (x + 2.0 * y) / 3.0;
   const double first_offset = y - mean;
-  double bound = power(3.0 * series_error, -1.0 / 8.0) * std::abs(mean - x);
+  double bound = reach_of_rc * std::abs(mean - x);
   double quarter_power = 1.0;
   while (bound >= std::abs(mean)) {
     const double lambda = 2.0 * std::sqrt(x) * std::sqrt(y) + y;
@@ -43,8 +47,8 @@ double carlson_rf(double x, double y, double z) {
   const double first_mean = (x + y + z) / 3.0;
   const double x_offset = first_mean - x, y_offset = first_mean - y;
   double mean = first_mean;
-  double bound = power(3.0 * series_error, -1.0 / 6.0) *
-                 std::max({std::abs(x_offset), std::abs(y_offset), std::abs(first_mean - z)});
+  double bound =
+      reach_of_rf * std::max({std::abs(x_offset), std::abs(y_offset), std::abs(first_mean - z)});
   double quarter_power = 1.0;
   while (bound >= mean) {
     const double rx = std::sqrt(x), ry = std::sqrt(y), rz = std::sqrt(z);
@@ -68,9 +72,8 @@ double carlson_rj(double x, double y, double z, double p) {
   const double x_offset = first_mean - x, y_offset = first_mean - y, z_offset = first_mean - z;
   double delta = (p - x) * (p - y) * (p - z);
   double mean = first_mean;
-  double bound = power(0.25 * series_error, -1.0 / 6.0) *
-                 std::max({std::abs(x_offset), std::abs(y_offset), std::abs(z_offset),
-                           std::abs(first_mean - p)});
+  double bound = reach_of_rj * std::max({std::abs(x_offset), std::abs(y_offset), std::abs(z_offset),
+                                         std::abs(first_mean - p)});
   double quarter_power = 1.0, sum = 0.0;
   while (bound >= mean) {
     const double rx = std::sqrt(x), ry = std::sqrt(y), rz = std::sqrt(z), rp = std::sqrt(p);

@@ -43,6 +43,11 @@ Jacobi jacobi(double u, double modulus, double quarter) {
   return result;
 }
 
+/// Angular velocity in sorted axes.
+Vector3 turning(const Jacobi& f, const Vector3& amplitudes) {
+  return amplitudes.cwiseProduct(Vector3(f.cn, f.sn, f.dn));
+}
+
 /// R_x(theta) R_z(chi) with L = |L| (sin theta sin chi, sin theta cos chi, cos theta): turns L to
 /// z.
 Quaternion nutation(const Vector3& L) {
@@ -114,15 +119,16 @@ FreeTop::FreeTop(const BodyInertia& inertia, const Quaternion& q_WB, const Vecto
   const double start = arc_tangent(w[1] / amplitudes_[1], w[0] / amplitudes_[0]);
   const double half_turns = std::nearbyint(start / pi);
   phase_ = elliptic_f(start - half_turns * pi, modulus_ * modulus_) + 2.0 * quarter_ * half_turns;
-  momentum_frame_ = q_WB * body_to_sorted_.conjugate() *
-                    nutation(moments_.cwiseProduct(rate_at(phase_))).conjugate();
+  const Vector3 w_start = turning(jacobi(phase_, modulus_, quarter_), amplitudes_);
+  momentum_frame_ =
+      q_WB * body_to_sorted_.conjugate() * nutation(moments_.cwiseProduct(w_start)).conjugate();
 
   // Formulas that lose the state they were made from would lose the motion.
   // Near the separatrix the time of the next flip, about log(16 / (1 - m)) / 2, hangs on roundoff
   // of m.
   constexpr double separatrix = 1e-12;
   resolved_ = frequency_ != 0.0 && 1.0 - m > separatrix &&
-              (rate_at(phase_) - w).norm() <= 1e-9 * w.norm() && std::isfinite(third_kind(phase_));
+              (w_start - w).norm() <= 1e-9 * w.norm() && std::isfinite(phase(phase_).third_kind);
 
   const double least = principal.minCoeff();
   fastest_ = std::min(L_ / least, std::sqrt(twice_energy / least));
@@ -132,25 +138,21 @@ FreeTop::FreeTop(const BodyInertia& inertia, const Quaternion& q_WB, const Vecto
   }
 }
 
-Vector3 FreeTop::rate_at(double u) const {
+FreeTop::Phase FreeTop::phase(double u) const {
   const Jacobi f = jacobi(u, modulus_, quarter_);
-  return amplitudes_.cwiseProduct(Vector3(f.cn, f.sn, f.dn));
+  return {turning(f, amplitudes_),
+          2.0 * f.half_turns * quarter_integral_ +
+              elliptic_pi(f.amplitude, characteristic_, modulus_ * modulus_)};
 }
 
-// Integral of du / (1 + n sn^2 u) from 0.
-double FreeTop::third_kind(double u) const {
-  const Jacobi f = jacobi(u, modulus_, quarter_);
-  return 2.0 * f.half_turns * quarter_integral_ +
-         elliptic_pi(f.amplitude, characteristic_, modulus_ * modulus_);
-}
+FreeTop::Rotation FreeTop::at(double time) const { return at(time, phase(phase_).third_kind); }
 
-FreeTop::Rotation FreeTop::at(double time) const {
-  const double u = phase_ + frequency_ * time;
-  const Vector3 w_S = rate_at(u);
+FreeTop::Rotation FreeTop::at(double time, double third_kind_at_start) const {
+  const auto [w_S, third_kind] = phase(phase_ + frequency_ * time);
   // Precession about L at the rate (w_1 L_1 + w_2 L_2) L / (L_1^2 + L_2^2), integrated.
   const double precession = L_ / moments_[2] * time - L_ * (1.0 / moments_[2] - 1.0 / moments_[0]) /
                                                           frequency_ *
-                                                          (third_kind(u) - third_kind(phase_));
+                                                          (third_kind - third_kind_at_start);
   const Quaternion about_L(cosine(0.5 * precession), 0.0, 0.0, sine(0.5 * precession));
   const Quaternion q_WS = momentum_frame_ * about_L * nutation(moments_.cwiseProduct(w_S));
   return {(q_WS * body_to_sorted_).normalized(), q_WS * w_S};
@@ -178,9 +180,10 @@ void FreeTop::fit(double time, double h, Motion& motion) const {
   std::array<HermiteNode<4>, nodes> orientation;
   std::array<HermiteNode<3>, nodes> angular;
   Vector4 previous = Vector4::Zero();
+  const double third_kind_at_start = phase(phase_).third_kind;
   for (int n = 0; n < nodes; ++n) {
     const double s = h * n / (nodes - 1);
-    const Rotation rotation = at(time + s);
+    const Rotation rotation = at(time + s, third_kind_at_start);
     const Quaternion q_WS = rotation.orientation * body_to_sorted_.conjugate();
     const Vector3& w = rotation.angular_velocity;
     const Vector3 w_S = q_WS.conjugate() * w;

@@ -42,8 +42,12 @@ class FreeTop {
   }
 
  private:
-  [[nodiscard]] Vector3 rate_at(double u) const;
-  [[nodiscard]] double third_kind(double u) const;
+  struct Phase {
+    Vector3 w_S;
+    double third_kind;  ///< integral of du / (1 + n sn^2 u) from 0
+  };
+  [[nodiscard]] Phase phase(double u) const;
+  [[nodiscard]] Rotation at(double time, double third_kind_at_start) const;
 
   // In axes S: the body's, in Jacobi's order, made right-handed.
   Vector3 moments_ = Vector3::Ones();                   ///< kg m^2
