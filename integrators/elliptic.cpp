@@ -12,7 +12,7 @@ namespace {
 
 // Truncation errors of the series below: relative, far under roundoff [Carlson1995, eq. 2.4].
 constexpr double series_error = 1e-18;
-// How close the arguments have to be to their mean for that, from eqs. 2.4, 2.13 and 2.19.
+// How close the arguments have to be to their mean for that: 1 over this, of the mean.
 const double reach_of_rc = power(3.0 * series_error, -1.0 / 8.0);
 const double reach_of_rf = power(3.0 * series_error, -1.0 / 6.0);
 const double reach_of_rj = power(0.25 * series_error, -1.0 / 6.0);
