@@ -94,38 +94,55 @@ double longest_inside(const Body& host, const Body& guest, const Way& way, const
                   time_inside(host, guest, way, {guest.axes * vertex}, reach, k, horizon));
 }
 
-/// Two edges that cross: the place of the guest's edge that is over the host's, and stays over it
-/// while the one slides on the other.
-double crossing_inside(const Body& host, const Body& guest, const Way& way, const Vector3& into,
-                       int host_edge, int guest_edge, double reach, const Kinematics& k,
-                       double horizon) {
+/// Two edges that cross: the middle of what the host holds of the guest's edge. Both ends of that
+/// part move, one along the guest's edge on each of two faces, and the place moves at the mean of
+/// their rates: it is the last to come out, however fast the one edge slides on the other.
+double middle_inside(const Body& host, const Body& guest, const Way& way, const Vector3& into,
+                     int guest_edge, double reach, const Kinematics& k, double horizon) {
   const Vector3 edge = guest.axes.col(guest_edge);
-  const Vector3 across = host.axes.col(host_edge).cross(into);
-  const double sine = across.dot(edge);
-  if (sine == 0.0) {
-    return 0.0;
-  }
-  const auto middle_of_edge = [](const Body& body, const Vector3& along, int edge_of_body) {
-    Vector3 p = Vector3::Zero();
-    for (int i = 0; i < 3; ++i) {
-      if (i != edge_of_body) {
-        p += std::copysign(body.half[i], along.dot(body.axes.col(i))) * body.axes.col(i);
-      }
+  Vector3 arm = Vector3::Zero();
+  for (int i = 0; i < 3; ++i) {
+    if (i != guest_edge) {
+      arm += std::copysign(guest.half[i], into.dot(guest.axes.col(i))) * guest.axes.col(i);
     }
-    return p;
+  }
+  // In the host's frame a place at s along the edge is at + s along, and moves at rate + s turning.
+  const Vector3 at = host.axes.transpose() * (way.d + arm);
+  const Vector3 along = host.axes.transpose() * edge;
+  const Vector3 rate =
+      host.axes.transpose() * (way.v + guest.w.cross(arm) - host.w.cross(way.d + arm));
+  const Vector3 turning = host.axes.transpose() * (guest.w - host.w).cross(edge);
+  int rounded = 0;
+  (host.axes.transpose() * into).cwiseAbs().maxCoeff(&rounded);
+  struct End {
+    double s = 0.0;
+    double rate = 0.0;
   };
-  const Vector3 arm = middle_of_edge(guest, into, guest_edge);
-  const double offset = across.dot(middle_of_edge(host, -into, host_edge) - way.d - arm) / sine;
-  Place place{arm + offset * edge};
-  const Vector3 rate = way.v + guest.w.cross(place.arm) - host.w.cross(way.d + place.arm);
-  const double slip = -across.dot(rate) / sine;
-  place.slip = slip * edge;
-  const double ahead = guest.half[guest_edge] - (slip < 0.0 ? -offset : offset);
-  if (!(std::abs(offset) < guest.half[guest_edge])) {
+  End low{-guest.half[guest_edge]};
+  End high{guest.half[guest_edge]};
+  for (int i = 0; i < 3; ++i) {
+    if (along[i] == 0.0) {
+      continue;
+    }
+    const double half = host.half[i] + (i == rounded ? reach : 0.0);
+    const auto crossing = [&](double face) {
+      const double s = (face - at[i]) / along[i];
+      return End{s, -(rate[i] + s * turning[i]) / along[i]};
+    };
+    const End first = crossing(std::copysign(half, -along[i]));
+    const End last = crossing(std::copysign(half, along[i]));
+    low = first.s > low.s ? first : low;
+    high = last.s < high.s ? last : high;
+  }
+  if (!(low.s < high.s)) {
     return 0.0;
   }
+  const double s = low.s + 0.5 * (high.s - low.s);
+  const double slip = 0.5 * (low.rate + high.rate);
+  const double ahead = guest.half[guest_edge] - (slip < 0.0 ? -s : s);
   const double end = slip != 0.0 ? ahead / std::abs(slip) : horizon;
-  return time_inside(host, guest, way, place, reach, k, std::min(horizon, end));
+  return time_inside(host, guest, way, {arm + s * edge, slip * edge}, reach, k,
+                     std::min(horizon, end));
 }
 
 /// How long the place of the box that is nearest to the ball's centre stays inside the ball: the
@@ -172,8 +189,8 @@ double common_point(PairKind kind, const PairMotion& motion, const Kinematics& k
   if (witness.axis >= first_edges) {
     const int edge_a = witness.edge_a();
     const int edge_b = witness.edge_b();
-    return std::max(crossing_inside(a, b, of_b, -witness.n, edge_a, edge_b, reach, k, horizon),
-                    crossing_inside(b, a, of_a, witness.n, edge_b, edge_a, reach, k, horizon));
+    return std::max(middle_inside(a, b, of_b, -witness.n, edge_b, reach, k, horizon),
+                    middle_inside(b, a, of_a, witness.n, edge_a, reach, k, horizon));
   }
   return std::max(longest_inside(a, b, of_b, -witness.n, reach, k, horizon),
                   longest_inside(b, a, of_a, witness.n, reach, k, horizon));

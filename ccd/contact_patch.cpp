@@ -112,6 +112,26 @@ struct IncidentFace {
   Vector3 centre, u, v;
 };
 
+/// The part of a polygon inside the borders of face `axis` of a box, each moved out by `slack`.
+Polygon within(Polygon face, const Vector3& half, int axis, double slack) {
+  for (const int k : {(axis + 1) % 3, (axis + 2) % 3}) {
+    for (const double s : {-1.0, 1.0}) {
+      face = clipped(face, k, s, half[k] + slack);
+    }
+  }
+  return face;
+}
+
+/// How far the two points are from being one above the other over face `axis`.
+double beyond(const ContactPatch& patch, int axis) {
+  Vector3 offset = patch.on_b - patch.on_a;
+  offset[axis] = 0.0;
+  return offset.lpNorm<Eigen::Infinity>();
+}
+
+/// Borders give way by up to 2^8 margins of rounding.
+constexpr int most_widenings = 9;
+
 /// The patch on face `axis` of the reference box.
 ContactPatch on_face(const Vector3& reference, int axis, double sign, const Vector3& half,
                      const Vector3& d, const Matrix3& R) {
@@ -135,6 +155,13 @@ ContactPatch on_face(const Vector3& reference, int axis, double sign, const Vect
       return {on_a, corner};
     }
   }
+  const auto deepest = [&](const Polygon& face) -> ContactPatch {
+    const double level = least(face, axis, sign) + margin;
+    const Vector3 on_b = centroid(clipped(face, axis, sign, level));
+    Vector3 on_a = on_b.cwiseMax(-reference).cwiseMin(reference);
+    on_a[axis] = sign * reference[axis];
+    return {on_a, on_b};
+  };
   Polygon face = incident.polygon();
   // Where rounding leaves nothing, two edges meet: the nearest part, of what the other planes
   // leave.
@@ -150,22 +177,25 @@ ContactPatch on_face(const Vector3& reference, int axis, double sign, const Vect
       }
     }
   }
-  const double level = least(face, axis, sign) + margin;
-  const Vector3 on_b = centroid(clipped(face, axis, sign, level));
-  Vector3 on_a = on_b.cwiseMax(-reference).cwiseMin(reference);
-  on_a[axis] = sign * reference[axis];
-  return {on_a, on_b};
+  const ContactPatch patch = deepest(face);
+  if (beyond(patch, axis) <= 2.0 * margin) {
+    return patch;
+  }
+  // An edge that lies along the border of the face: one plane may have left nothing of it but what
+  // is beyond the next. Both give way a little.
+  for (int i = 0; i < most_widenings; ++i) {
+    const Polygon wide = within(incident.polygon(), reference, axis, std::ldexp(margin, i));
+    if (wide.size > 0) {
+      return deepest(wide);
+    }
+  }
+  return patch;
 }
 
 /// The corners of the incident face clipped to the reference face, with their feet on it.
 PatchCorners corners_on_face(const Vector3& reference, int axis, double sign, const Vector3& half,
                              const Vector3& d, const Matrix3& R) {
-  Polygon face = IncidentFace(axis, sign, half, d, R).polygon();
-  for (const int k : {(axis + 1) % 3, (axis + 2) % 3}) {
-    for (const double s : {-1.0, 1.0}) {
-      face = clipped(face, k, s, reference[k]);
-    }
-  }
+  const Polygon face = within(IncidentFace(axis, sign, half, d, R).polygon(), reference, axis, 0.0);
   PatchCorners corners;
   for (int i = 0; i < face.size; ++i) {
     Vector3 foot = face[i];

@@ -31,6 +31,8 @@ constexpr int least_look = -150;
 constexpr double least_ulps = 8.0;
 /// The first look is where a pair would be past the touch by half of its gap and of its rounding.
 constexpr double past_touch = 1.5;
+/// An overlap deeper than so many gaps of the touch tells little about when it began.
+constexpr double deep_overlap = 8.0;
 /// From a touch: where it would be beyond roundoff.
 constexpr double out_of_touch = 8.0;
 /// Steps back from where they are apart again, each about half of what is left: to 1e-30 of it.
@@ -52,9 +54,9 @@ double first_look(const PairMotion& motion, const Look& at, double length, doubl
                    std::isfinite(crossing) ? crossing : unit});
 }
 
-/// The two are apart at both ends, or nearly: finds a time of a proven overlap between, where the
-/// gap is least.
-std::optional<double> overlap_between(PairLooks& pair, double low, double high) {
+/// The two are apart at both ends, or nearly: finds a proven overlap between, where the gap is
+/// least.
+std::optional<Look> overlap_between(PairLooks& pair, double low, double high) {
   assert(low <= high);
   for (int i = 0; i < most_halvings; ++i) {
     const double middle = low + 0.5 * (high - low);
@@ -63,7 +65,7 @@ std::optional<double> overlap_between(PairLooks& pair, double low, double high) 
     }
     const Look there = pair.look(middle);
     if (pair.overlap_proven(there)) {
-      return middle;
+      return there;
     }
     const double rate = pair.approach(there);
     if (std::abs(rate) * (high - low) <= level_gap * there.k.error) {
@@ -72,6 +74,24 @@ std::optional<double> overlap_between(PairLooks& pair, double low, double high) 
     (rate > 0.0 ? low : high) = middle;
   }
   return std::nullopt;
+}
+
+/// A proven overlap in (low, high], no deeper than `enough` unless none so shallow is proven: they
+/// may come faster than they began, where another corner gets ahead.
+double shallow_overlap(PairLooks& pair, double low, Look at, double enough) {
+  for (int i = 0; i < most_halvings && at.gap() < -enough; ++i) {
+    const double middle = low + 0.5 * (at.t() - low);
+    if (!(middle > low && middle < at.t())) {
+      break;
+    }
+    const Look there = pair.look(middle);
+    if (pair.overlap_proven(there)) {
+      at = there;
+    } else {
+      low = middle;
+    }
+  }
+  return at.t();
 }
 
 /// Up to when they are apart after leaving, along the witness or, where they touch along several
@@ -170,9 +190,10 @@ std::optional<Ending> search_contact(PairLooks& pair, const Look& here, bool per
   const double speed = pair.approach(here);
   persistent = persistent || here.within(least_gap);
   const double apart = std::max(here.gap(), least_gap * here.k.error);
+  const double room = here.gap() + 4.0 * here.k.error;
+  const double enough = deep_overlap * std::max(room, here.k.error);
   const double remaining = pair.duration() - here.t();
-  double ahead = first_look(pair.motion(), here, past_touch * (here.gap() + 4.0 * here.k.error),
-                            std::abs(speed));
+  double ahead = first_look(pair.motion(), here, past_touch * room, std::abs(speed));
   double before = here.t();
   double t = before;
   for (int attempt = 0; attempt < (persistent ? all_doublings : few_doublings); ++attempt) {
@@ -180,12 +201,12 @@ std::optional<Ending> search_contact(PairLooks& pair, const Look& here, bool per
     t = here.t() + ahead;
     const Look there = pair.look(t);
     if (pair.overlap_proven(there)) {
-      return Ending{ToiStatus::impact, here, t};
+      return Ending{ToiStatus::impact, here, shallow_overlap(pair, before, there, enough)};
     }
     if (there.gap() > apart && !there.within(least_gap)) {
       if (persistent) {
-        if (const auto t_hi = overlap_between(pair, before, t)) {
-          return Ending{ToiStatus::impact, here, *t_hi};
+        if (const auto overlap = overlap_between(pair, before, t)) {
+          return Ending{ToiStatus::impact, here, shallow_overlap(pair, before, *overlap, enough)};
         }
       }
       break;

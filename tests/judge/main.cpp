@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <exception>
@@ -113,10 +114,15 @@ void show(const Tally& tally, const std::string& name) {
   std::cout << tally.row(name) << std::endl;
 }
 
+/// A query is asked as its class is: also when its bodies are apart.
 Tally judge_file(const Arguments& arguments, Session& session) {
+  const std::vector<Family> families = all_families();
   Tally tally;
   for (const Query& query : read_queries(arguments.in)) {
-    session.take(query, {"file", "", nullptr}, tally);
+    const auto known = std::find_if(families.begin(), families.end(), [&](const Family& family) {
+      return family.name == query.family;
+    });
+    session.take(query, known == families.end() ? Family{"file", "", nullptr} : *known, tally);
   }
   return tally;
 }
