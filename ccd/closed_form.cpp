@@ -21,10 +21,10 @@ bool clear_at_poses(const MovingShape& a, const Pose& pose_a, const MovingShape&
   const double radii = a.motion.error_radius + b.motion.error_radius;
   const auto* box = std::get_if<Box>(&a.shape);
   const auto* other = std::get_if<Box>(&b.shape);
-  if (radii == 0.0 && box == nullptr) {
+  if (radii == 0.0 && box == nullptr && other == nullptr) {
     return !shapes_overlap(a.shape, pose_a, b.shape, pose_b);
   }
-  if (radii == 0.0 && other != nullptr) {
+  if (radii == 0.0 && box != nullptr && other != nullptr) {
     return boxes_apart(RelativeBoxes(*box, pose_a, *other, pose_b));
   }
   const auto extent = [](const Shape& shape) {

@@ -161,13 +161,16 @@ std::variant<Ending, Look> enter(PairLooks& pair, const Look& here) {
   const double scale = motion.speed_bound(here.k, motion.bounds(0.0, 0.0), 0.0);
   double ahead = first_look(motion, here, out_of_touch * here.k.error,
                             rate > here.k.rate_error ? rate : scale);
+  double before = 0.0;
   double t = 0.0;
   for (int attempt = 0; attempt < all_doublings && ahead > 0.0; ++attempt) {
     t = std::min(ahead, duration);
     const Look there = pair.look(t);
     if (pair.overlap_proven(there)) {
-      return Ending{ToiStatus::impact, here, t};
+      const double enough = deep_overlap * clear_gap * here.k.error;
+      return Ending{ToiStatus::impact, here, shallow_overlap(pair, before, there, enough)};
     }
+    before = t;
     if (!there.within(clear_gap)) {
       if (!left_before(pair, here, there)) {
         break;
@@ -190,7 +193,7 @@ std::optional<Ending> search_contact(PairLooks& pair, const Look& here, bool per
   const double speed = pair.approach(here);
   persistent = persistent || here.within(least_gap);
   const double apart = std::max(here.gap(), least_gap * here.k.error);
-  const double room = here.gap() + 4.0 * here.k.error;
+  const double room = here.gap() + clear_gap * here.k.error;
   const double enough = deep_overlap * std::max(room, here.k.error);
   const double remaining = pair.duration() - here.t();
   double ahead = first_look(pair.motion(), here, past_touch * room, std::abs(speed));

@@ -165,10 +165,12 @@ struct SphereAbovePlane {
                                  ? plane.position[0]
                                  : plane.position(local_time(plane, window, toi.t_lo));
       height = up.dot(centre - origin);
-      // Along an axis every caller computes this height; along any other with some roundings.
+      // Along an axis every caller computes this height; along any other with some roundings, and
+      // along a normal of another length if the quaternion is not of length one to roundoff.
       const double rounding = along_axis ? 0.0 : 8.0 * u * ((centre - origin).lpNorm<1>() + radius);
+      const double least = along_axis ? height : std::min(height, n.dot(centre - origin));
       const double reach = radius + (sphere.error_radius + plane.error_radius);
-      if (height - reach > rounding || toi.t_lo == 0.0 || toi.status == ToiStatus::overlapping) {
+      if (least - reach > rounding || toi.t_lo == 0.0 || toi.status == ToiStatus::overlapping) {
         break;
       }
       toi.t_lo = std::max(0.0, first - back);

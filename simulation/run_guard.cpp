@@ -102,30 +102,33 @@ void RunGuard::check_finite(const BodyState& body, BodyIndex i, Instant t) const
 
 void RunGuard::check_energy(const Frame& frame) const {
   const EnergyLedger& ledger = frame.ledger;
-  const auto need = [&](double joules, std::string_view name) {
-    if (std::isfinite(joules)) {
-      return;
+  const auto need = [&](double joules, const auto& name) {
+    if (!std::isfinite(joules)) {
+      refuse_energy(frame, joules, name());
     }
-    std::size_t fastest = 0;
-    for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
-      if (frame.bodies[i].twist.linear.norm() > frame.bodies[fastest].twist.linear.norm()) {
-        fastest = i;
-      }
-    }
-    throw Broken{fmt::format(
-        "not finite: {} in the energy ledger at t = {} s is {} J; the fastest body is '{}', at "
-        "{:.3g} m/s",
-        name, frame.time.seconds, joules, model_->body(fastest).name,
-        frame.bodies[fastest].twist.linear.norm())};
   };
-  need(ledger.kinetic(), "kinetic");
-  need(ledger.potential(), "potential");
+  need(ledger.kinetic(), [] { return "kinetic"; });
+  need(ledger.potential(), [] { return "potential"; });
   for (std::size_t i = 0; i < energy_line_count; ++i) {
     const auto line = static_cast<EnergyLine>(i);
-    need(ledger.line(line), to_string(line));
+    need(ledger.line(line), [line] { return to_string(line); });
   }
-  need(ledger.unexplained(), "unexplained");
-  need(ledger.flow(), "flow");
+  need(ledger.unexplained(), [] { return "unexplained"; });
+  need(ledger.flow(), [] { return "flow"; });
+}
+
+void RunGuard::refuse_energy(const Frame& frame, double joules, std::string_view name) const {
+  std::size_t fastest = 0;
+  for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
+    if (frame.bodies[i].twist.linear.norm() > frame.bodies[fastest].twist.linear.norm()) {
+      fastest = i;
+    }
+  }
+  throw Broken{fmt::format(
+      "not finite: {} in the energy ledger at t = {} s is {} J; the fastest body is '{}', at "
+      "{:.3g} m/s",
+      name, frame.time.seconds, joules, model_->body(fastest).name,
+      frame.bodies[fastest].twist.linear.norm())};
 }
 
 /// Infinite for bodies that are not watched.

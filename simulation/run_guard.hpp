@@ -5,6 +5,7 @@
 #include "core/scheme.hpp"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace kairos {
@@ -42,6 +43,7 @@ class RunGuard : public Recorder {
  private:
   void check_finite(const BodyState& body, BodyIndex i, Instant t) const;
   void check_energy(const Frame& frame) const;
+  [[noreturn]] void refuse_energy(const Frame& frame, double joules, std::string_view name) const;
   void check_spin(const BodyState& body, BodyIndex i, Instant t);
   [[nodiscard]] double most_spin_energy(const BodyState& body, BodyIndex i) const;
 

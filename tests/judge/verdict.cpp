@@ -174,8 +174,12 @@ void check_poses(const Query& q, const TimeOfImpact& answer, double start_gap, V
   if (answer.t_lo == 0.0) {
     return;  // those of the query
   }
-  const Pose a = q.a.motion(q.start, q.duration).pose(q.a.age + answer.t_lo);
-  const Pose b = q.b.motion(q.start, q.duration).pose(q.b.age + answer.t_lo);
+  const auto pose = [&](const Body& body) {
+    const Motion motion = body.motion(q.start, q.duration);
+    return motion.pose((q.start + answer.t_lo) - motion.start);  // as whoever asked comes there
+  };
+  const Pose a = pose(q.a);
+  const Pose b = pose(q.b);
   const double gap = exact_gap(q, a, b);
   const double hidden = roundoff(q, answer.t_lo);
   const double allowed = start_gap > 0.0 ? 0.0 : hidden;
