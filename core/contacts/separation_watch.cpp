@@ -84,10 +84,10 @@ class Watcher {
         b_(watch.motion_b, duration),
         duration_(duration) {
     for (const TouchFeature& plane : watch.pair.planes_b) {
-      add_plane(plane, false);
+      add_plane(plane, false, true);
     }
     for (const TouchFeature& plane : watch.pair.planes_a) {
-      add_plane(plane, true);
+      add_plane(plane, true, true);
     }
     for (const Touch& touch : watch.held) {
       if (touch.on_a.kind != Kind::plane && touch.on_b.kind != Kind::plane) {
@@ -100,7 +100,11 @@ class Watcher {
   }
 
   double strike_time() {
-    const std::vector<double> start = heights(0.0);
+    std::vector<double> start = heights(0.0);
+    if (std::none_of(start.begin(), start.end(), [](double height) { return height > 0.0; })) {
+      add_spare();
+      start = heights(0.0);
+    }
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
       // Corners that are nearer already may stay so while they draw away.
       candidates_[c].least = watch_.least * std::min(watch_.pair.nearest, start[c]);
@@ -111,7 +115,8 @@ class Watcher {
  private:
   [[nodiscard]] double reach(const TouchFeature& f) const { return f.at.norm(); }
 
-  void add_plane(const TouchFeature& plane, bool of_a) {
+  /// `but_held`: what is held on such a face is not asked about.
+  void add_plane(const TouchFeature& plane, bool of_a, bool but_held) {
     Candidate c;
     c.plane = &plane;
     c.of_a = of_a;
@@ -122,7 +127,7 @@ class Watcher {
     double arm = 0.0;
     for (const TouchFeature& corner : corners) {
       const bool is_held =
-          std::any_of(watch_.held.begin(), watch_.held.end(), [&](const Touch& touch) {
+          but_held && std::any_of(watch_.held.begin(), watch_.held.end(), [&](const Touch& touch) {
             const TouchFeature& face = of_a ? touch.on_a : touch.on_b;
             return face.kind == Kind::plane && belongs(corner, of_a ? touch.on_b : touch.on_a);
           });
@@ -137,6 +142,76 @@ class Watcher {
     const Motion& motion = of_a ? watch_.motion_a : watch_.motion_b;
     c.bend = bend(carrier, other, motion.orientation(0.0) * plane.direction, of_a, arm);
     candidates_.push_back(std::move(c));
+  }
+
+  /// No plane through what touches has all corners where they are to be: a corner that nothing
+  /// holds is over the rim, or behind it. Two polytopes that are apart are so along a face of one
+  /// of them, or across an edge of each [Gottschalk1996, theorem 1]: of these the plane along which
+  /// they are apart most.
+  void add_spare() {
+    if (watch_.pair.shape_a == nullptr || watch_.pair.shape_b == nullptr) {
+      return;
+    }
+    const BodyState a{watch_.motion_a.pose(0.0), {}};
+    const BodyState b{watch_.motion_b.pose(0.0), {}};
+    double best = 0.0;
+    spare_.clear();
+    for (const bool of_a : {true, false}) {
+      const Shape& shape = of_a ? *watch_.pair.shape_a : *watch_.pair.shape_b;
+      for (const TouchFeature& face : faces_of(shape)) {
+        Candidate c;
+        c.plane = &face;
+        c.of_a = of_a;
+        (of_a ? c.corners_b : c.corners_a) = of_a ? watch_.pair.corners_b : watch_.pair.corners_a;
+        if (const double h = height(c, a, b); h > best) {
+          best = h;
+          spare_ = {{.on_a = of_a ? face : TouchFeature{}, .on_b = of_a ? TouchFeature{} : face}};
+        }
+      }
+    }
+    for (const Touch& edges : crossing_edges(a.pose, b.pose)) {
+      Candidate c;
+      c.touch = &edges;
+      c.corners_a = watch_.pair.corners_a;
+      c.corners_b = watch_.pair.corners_b;
+      if (const double h = height(c, a, b); h > best) {
+        best = h;
+        spare_ = {edges};
+      }
+    }
+    for (const Touch& spare : spare_) {
+      if (spare.on_a.kind == Kind::line) {
+        add_touch(spare, false);
+      } else {
+        const bool of_a = spare.on_a.kind == Kind::plane;
+        add_plane(of_a ? spare.on_a : spare.on_b, of_a, false);
+      }
+    }
+  }
+
+  /// Edges of both whose common perpendicular leads out of both, so that it may separate them.
+  [[nodiscard]] std::vector<Touch> crossing_edges(const Pose& a, const Pose& b) const {
+    constexpr double nearly_parallel = 1e-6;
+    const auto edges_a = edges_of(*watch_.pair.shape_a);
+    const auto edges_b = edges_of(*watch_.pair.shape_b);
+    std::vector<Touch> found;
+    for (const TouchFeature& edge_a : edges_a) {
+      const Vector3 along_a = a.orientation * edge_a.direction;
+      const Vector3 at_a = a.to_world(edge_a.at);
+      for (const TouchFeature& edge_b : edges_b) {
+        const Vector3 across = along_a.cross(b.orientation * edge_b.direction);
+        const Vector3 between = b.to_world(edge_b.at) - at_a;
+        const double outward = across.dot(between);
+        if (across.norm() < nearly_parallel || outward == 0.0) {
+          continue;
+        }
+        const Vector3 n = (outward > 0.0 ? 1.0 : -1.0) * across;
+        if (n.dot(at_a - a.position) > 0.0 && n.dot(b.position - b.to_world(edge_b.at)) > 0.0) {
+          found.push_back({.on_a = edge_a, .on_b = edge_b, .normal = n.normalized()});
+        }
+      }
+    }
+    return found;
   }
 
   /// Bounds the second derivative of n.(x - q), where n and q belong to `carrier`: of n.(x_o -
@@ -263,6 +338,7 @@ class Watcher {
   Bounds b_;
   double duration_;
   std::vector<Candidate> candidates_;
+  std::vector<Touch> spare_;  ///< what one of them is through; a face is that of one body alone
 };
 
 }  // namespace

@@ -382,6 +382,17 @@ std::vector<TouchFeature> faces_of(const Shape& shape) {
   return faces;
 }
 
+std::vector<TouchFeature> edges_of(const Shape& shape) {
+  std::vector<TouchFeature> edges;
+  if (const auto c = polytope_corners(shape); c && !(c->rounding > 0.0)) {
+    for (const auto& [i, j] : c->edges) {
+      const Vector3& at = c->vertices[i];
+      edges.push_back({Kind::line, at, (c->vertices[j] - at).normalized(), 0.0});
+    }
+  }
+  return edges;
+}
+
 TouchFeature face_feature(const Shape& shape, const Vector3& x, const Vector3& outward) {
   TouchFeature face{Kind::plane, x, outward, 0.0};
   if (std::holds_alternative<Box>(shape)) {

@@ -66,6 +66,9 @@ struct TouchNow {
 /// The faces of a box or of a hull without rounding, each a plane; empty for others.
 [[nodiscard]] std::vector<TouchFeature> faces_of(const Shape& shape);
 
+/// The edges of a box or of a hull without rounding, each a line; empty for others.
+[[nodiscard]] std::vector<TouchFeature> edges_of(const Shape& shape);
+
 /// The face of a shape that looks `outward`, unit, near a point of the surface (body frame): its
 /// own normal, on the plane that supports the shape, whatever the roundoff of both.
 [[nodiscard]] TouchFeature face_feature(const Shape& shape, const Vector3& x,

@@ -18,6 +18,9 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double small_way = 1e-3;
 /// Hops that die down are taken for rest below this part of the extent.
 constexpr double small_rest = 1e-10;
+/// Those that do not, below so many eps of coordinates and extent: no detector tells them from
+/// touch.
+constexpr double unresolved = 64.0;
 /// More contacts than these are not followed.
 constexpr std::size_t most_contacts = 24;
 
@@ -109,7 +112,8 @@ double EventAccumulation::rest_tolerance(BodyIndex a, BodyIndex b, double e) con
 }
 
 double EventAccumulation::rest_tolerance(double extent, double coordinate, bool dies_down) {
-  return (dies_down ? small_rest * extent : 0.0) + 4.0 * epsilon * coordinate;
+  return dies_down ? small_rest * extent + 4.0 * epsilon * coordinate
+                   : unresolved * epsilon * (coordinate + extent);
 }
 
 EventAccumulation::Scale EventAccumulation::scale_of(const Rebound& of) const {

@@ -309,7 +309,9 @@ std::string EventModes::add_touches(Gathered& found, Instant t, Turning& turning
                      std::move(*corners_b),
                      {},
                      {},
-                     least_gap * predictor_.touching_gap(a, b)};
+                     least_gap * predictor_.touching_gap(a, b),
+                     &run_.model.shape(a),
+                     &run_.model.shape(b)};
     const Vector3& middle = m.points[0].position;
     const Vector3 half = 0.5 * m.points[0].gap * m.normal;
     if (m.face_of_a && found.passes[p] == 0) {
