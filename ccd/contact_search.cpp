@@ -170,16 +170,19 @@ std::variant<Ending, Look> enter(PairLooks& pair, const Look& here) {
       const double enough = deep_overlap * clear_gap * here.k.error;
       return Ending{ToiStatus::impact, here, shallow_overlap(pair, before, there, enough)};
     }
-    before = t;
     if (!there.within(clear_gap)) {
-      if (!left_before(pair, here, there)) {
-        break;
+      if (left_before(pair, here, there)) {
+        return there;
       }
-      return there;
+      if (const auto overlap = overlap_between(pair, before, t)) {
+        return Ending{ToiStatus::impact, here, overlap->t()};
+      }
+      break;
     }
     if (!(ahead < duration) || !std::isfinite(2.0 * ahead)) {
       break;
     }
+    before = t;
     ahead *= 2.0;
   }
   return Ending{ToiStatus::undecided, here, t};

@@ -8,6 +8,12 @@
 #include <cassert>
 
 namespace kairos::ccd {
+namespace {
+
+/// Sine of the angle of edges.
+constexpr double nearly_parallel = 1e-6;
+
+}  // namespace
 
 Look PairLooks::look(double t) {
   assert(t >= 0.0 && t <= duration());
@@ -37,9 +43,11 @@ double PairLooks::safe_step(const Kinematics& k, const Witness& witness, const T
   if (!turns || step >= horizon) {
     return step;
   }
-  // More than half of what the approach alone would allow: turning hardly matters.
+  // More than half of what the approach alone would allow: turning hardly matters. The direction
+  // across edges that are nearly parallel turns as fast as it likes, and closes by that.
+  const bool turns_fast = witness.frame == WitnessFrame::edges && witness.sine < nearly_parallel;
   const double closing = -moving.rate();
-  if (closing > 0.0 && 2.0 * step * closing > witness.gap) {
+  if (closing > 0.0 && 2.0 * step * closing > witness.gap && !turns_fast) {
     return step;
   }
   const auto try_along = [&](const Witness& other) {
