@@ -436,8 +436,8 @@ TEST_CASE("turning: what a blow hands on keeps its restitution, however slow it 
   REQUIRE(sim.result.status == RunStatus::completed);
   const std::vector<Event> all = impacts(sim);
   for (const Event& event : all) {
-    // To what blows of the same instant round, 64 eps of the greatest: of 1 kg each, the box answers
-    // 1 N s at a corner by 1 / m + 3 h^2 / I = 5.5 m/s, I = 2/3 m h^2.
+    // To what blows of the same instant round, 64 eps of the greatest: of 1 kg each, the box
+    // answers 1 N s at a corner by 1 / m + 3 h^2 / I = 5.5 m/s, I = 2/3 m h^2.
     double greatest = 0.0;
     for (const Event& other : all) {
       if (other.time == event.time) {
