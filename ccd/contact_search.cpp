@@ -161,13 +161,13 @@ std::variant<Ending, Look> enter(PairLooks& pair, const Look& here) {
   const double scale = motion.speed_bound(here.k, motion.bounds(0.0, 0.0), 0.0);
   double ahead = first_look(motion, here, out_of_touch * here.k.error,
                             rate > here.k.rate_error ? rate : scale);
+  const double enough = deep_overlap * clear_gap * here.k.error;
   double before = 0.0;
   double t = 0.0;
   for (int attempt = 0; attempt < all_doublings && ahead > 0.0; ++attempt) {
     t = std::min(ahead, duration);
     const Look there = pair.look(t);
     if (pair.overlap_proven(there)) {
-      const double enough = deep_overlap * clear_gap * here.k.error;
       return Ending{ToiStatus::impact, here, shallow_overlap(pair, before, there, enough)};
     }
     if (!there.within(clear_gap)) {
@@ -175,7 +175,7 @@ std::variant<Ending, Look> enter(PairLooks& pair, const Look& here) {
         return there;
       }
       if (const auto overlap = overlap_between(pair, before, t)) {
-        return Ending{ToiStatus::impact, here, overlap->t()};
+        return Ending{ToiStatus::impact, here, shallow_overlap(pair, before, *overlap, enough)};
       }
       break;
     }

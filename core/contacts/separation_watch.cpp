@@ -146,52 +146,55 @@ class Watcher {
 
   /// No plane through what touches has all corners where they are to be: a corner that nothing
   /// holds is over the rim, or behind it. Two polytopes that are apart are so along a face of one
-  /// of them, or across an edge of each [Gottschalk1996, theorem 1]: of these the plane along which
-  /// they are apart most.
+  /// of them, or across an edge of each [Gottschalk1996]: of these the plane along which they are
+  /// apart most.
   void add_spare() {
-    if (watch_.pair.shape_a == nullptr || watch_.pair.shape_b == nullptr) {
+    const TurningPair& pair = watch_.pair;
+    if (pair.shape_a == nullptr || pair.shape_b == nullptr || pair.corners_a.empty() ||
+        pair.corners_b.empty()) {
       return;
     }
     const BodyState a{watch_.motion_a.pose(0.0), {}};
     const BodyState b{watch_.motion_b.pose(0.0), {}};
     double best = 0.0;
-    spare_.clear();
+    const auto is_best = [&](const TouchFeature* face, bool of_a, const Touch* edges) {
+      const Candidate c{.corners_a = pair.corners_a,
+                        .corners_b = pair.corners_b,
+                        .plane = face,
+                        .of_a = of_a,
+                        .touch = edges};
+      const double h = height(c, a, b);
+      best = std::max(best, h);
+      return h == best && h > 0.0;
+    };
+    enum class Spare { none, face_of_a, face_of_b, edges } found = Spare::none;
     for (const bool of_a : {true, false}) {
-      const Shape& shape = of_a ? *watch_.pair.shape_a : *watch_.pair.shape_b;
-      for (const TouchFeature& face : faces_of(shape)) {
-        Candidate c;
-        c.plane = &face;
-        c.of_a = of_a;
-        (of_a ? c.corners_b : c.corners_a) = of_a ? watch_.pair.corners_b : watch_.pair.corners_a;
-        if (const double h = height(c, a, b); h > best) {
-          best = h;
-          spare_ = {{.on_a = of_a ? face : TouchFeature{}, .on_b = of_a ? TouchFeature{} : face}};
+      for (const TouchFeature& face : faces_of(of_a ? *pair.shape_a : *pair.shape_b)) {
+        if (is_best(&face, of_a, nullptr)) {
+          spare_face_ = face;
+          found = of_a ? Spare::face_of_a : Spare::face_of_b;
         }
       }
     }
     for (const Touch& edges : crossing_edges(a.pose, b.pose)) {
-      Candidate c;
-      c.touch = &edges;
-      c.corners_a = watch_.pair.corners_a;
-      c.corners_b = watch_.pair.corners_b;
-      if (const double h = height(c, a, b); h > best) {
-        best = h;
-        spare_ = {edges};
+      if (is_best(nullptr, false, &edges)) {
+        spare_edges_ = edges;
+        found = Spare::edges;
       }
     }
-    for (const Touch& spare : spare_) {
-      if (spare.on_a.kind == Kind::line) {
-        add_touch(spare, false);
-      } else {
-        const bool of_a = spare.on_a.kind == Kind::plane;
-        add_plane(of_a ? spare.on_a : spare.on_b, of_a, false);
-      }
+    if (found == Spare::edges) {
+      add_touch(spare_edges_, false);
+    } else if (found != Spare::none) {
+      add_plane(spare_face_, found == Spare::face_of_a, false);
     }
   }
 
-  /// Edges of both whose common perpendicular leads out of both, so that it may separate them.
+  /// Edges of both whose common perpendicular leads out of both, so that it may separate them, and
+  /// that stay across each other: how fast it turns is bounded by twice what it is at first.
   [[nodiscard]] std::vector<Touch> crossing_edges(const Pose& a, const Pose& b) const {
     constexpr double nearly_parallel = 1e-6;
+    const double least_sine =
+        std::max(nearly_parallel, 2.0 * (a_.turning + b_.turning) * duration_);
     const auto edges_a = edges_of(*watch_.pair.shape_a);
     const auto edges_b = edges_of(*watch_.pair.shape_b);
     std::vector<Touch> found;
@@ -200,14 +203,13 @@ class Watcher {
       const Vector3 at_a = a.to_world(edge_a.at);
       for (const TouchFeature& edge_b : edges_b) {
         const Vector3 across = along_a.cross(b.orientation * edge_b.direction);
-        const Vector3 between = b.to_world(edge_b.at) - at_a;
-        const double outward = across.dot(between);
-        if (across.norm() < nearly_parallel || outward == 0.0) {
+        const Vector3 at_b = b.to_world(edge_b.at);
+        if (!(across.norm() > least_sine)) {
           continue;
         }
-        const Vector3 n = (outward > 0.0 ? 1.0 : -1.0) * across;
-        if (n.dot(at_a - a.position) > 0.0 && n.dot(b.position - b.to_world(edge_b.at)) > 0.0) {
-          found.push_back({.on_a = edge_a, .on_b = edge_b, .normal = n.normalized()});
+        const Vector3 n = (across.dot(at_b - at_a) > 0.0 ? 1.0 : -1.0) * across.normalized();
+        if (n.dot(at_a - a.position) > 0.0 && n.dot(b.position - at_b) > 0.0) {
+          found.push_back({.on_a = edge_a, .on_b = edge_b, .normal = n});
         }
       }
     }
@@ -338,7 +340,8 @@ class Watcher {
   Bounds b_;
   double duration_;
   std::vector<Candidate> candidates_;
-  std::vector<Touch> spare_;  ///< what one of them is through; a face is that of one body alone
+  TouchFeature spare_face_;  ///< what one of them may be through
+  Touch spare_edges_;
 };
 
 }  // namespace

@@ -24,7 +24,7 @@ struct TurningPair {
       planes_a;  ///< of faces of a in touch, with the corners of b beyond them
   std::vector<TouchFeature> planes_b;
   double nearest = 0.0;  ///< what comes nearer than this strikes, m; held gaps are no smaller
-  const Shape* shape_a = nullptr;  ///< not owned
+  const Shape* shape_a = nullptr;  ///< whose other planes may separate them; not owned
   const Shape* shape_b = nullptr;
 };
 

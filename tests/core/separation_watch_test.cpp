@@ -63,6 +63,38 @@ struct TwoBalls {
   Touch touch;
 };
 
+/// How far two boxes are apart along the axis that separates them most; by the fifteen axes, in
+/// long double.
+long double gap_of_boxes(const Vector3& half_a, const Pose& a, const Vector3& half_b,
+                         const Pose& b) {
+  using Vector = Eigen::Matrix<long double, 3, 1>;
+  const auto axis = [](const Pose& pose, int k) {
+    return Vector(pose.orientation.cast<long double>().normalized() * Vector(Vector::Unit(k)));
+  };
+  const Vector d = b.position.cast<long double>() - a.position.cast<long double>();
+  long double most = -1.0L;
+  const auto look = [&](const Vector& along) {
+    if (along.norm() < 1e-6L) {
+      return;
+    }
+    const Vector n = along.normalized();
+    long double reach = 0.0L;
+    for (int k = 0; k < 3; ++k) {
+      reach += std::abs(n.dot(axis(a, k))) * static_cast<long double>(half_a[k]) +
+               std::abs(n.dot(axis(b, k))) * static_cast<long double>(half_b[k]);
+    }
+    most = std::max(most, std::abs(n.dot(d)) - reach);
+  };
+  for (int i = 0; i < 3; ++i) {
+    look(axis(a, i));
+    look(axis(b, i));
+    for (int j = 0; j < 3; ++j) {
+      look(axis(a, i).cross(axis(b, j)));
+    }
+  }
+  return most;
+}
+
 /// Two boxes whose edges cross at a rim of each, `nearest` apart, one above the other and tilted
 /// from it by a little, so that corners of one come below the top of the other, beside it. They go
 /// round where the edges cross.
@@ -105,37 +137,8 @@ struct CrossedBoxes {
     motion_b.position[1] -= up * up.dot(motion_b.position[1]);  // the gap is held
   }
 
-  /// How far the two are apart along the axis that separates them most; by the fifteen axes of two
-  /// boxes, in long double.
   [[nodiscard]] long double apart(double s) const {
-    using Vector = Eigen::Matrix<long double, 3, 1>;
-    const auto axis = [](const Pose& pose, int k) {
-      return Vector(pose.orientation.cast<long double>().normalized() * Vector(Vector::Unit(k)));
-    };
-    const Pose a = motion_a.pose(s);
-    const Pose b = motion_b.pose(s);
-    const Vector d = b.position.cast<long double>() - a.position.cast<long double>();
-    long double most = -1.0L;
-    const auto look = [&](const Vector& along) {
-      if (along.norm() < 1e-6L) {
-        return;
-      }
-      const Vector n = along.normalized();
-      long double reach = 0.0L;
-      for (int k = 0; k < 3; ++k) {
-        reach += std::abs(n.dot(axis(a, k))) * static_cast<long double>(half_a[k]) +
-                 std::abs(n.dot(axis(b, k))) * static_cast<long double>(half_b[k]);
-      }
-      most = std::max(most, std::abs(n.dot(d)) - reach);
-    };
-    for (int i = 0; i < 3; ++i) {
-      look(axis(a, i));
-      look(axis(b, i));
-      for (int j = 0; j < 3; ++j) {
-        look(axis(a, i).cross(axis(b, j)));
-      }
-    }
-    return most;
+    return gap_of_boxes(half_a, motion_a.pose(s), half_b, motion_b.pose(s));
   }
 
   TurningPair pair;
@@ -144,6 +147,70 @@ struct CrossedBoxes {
   Motion motion_a;
   Motion motion_b;
   Touch touch;
+};
+
+/// Two boxes anywhere beside each other, `gap` apart, that move and turn; the one plane that is
+/// known is of a face that does not separate them.
+struct BoxesBeside {
+  BoxesBeside(Random& random, double gap) {
+    pair.a = 0;
+    pair.b = 1;
+    pair.nearest = nearest;
+    const auto any_half = [&] {
+      return Vector3(random.uniform(0.1, 1.0), random.uniform(0.1, 1.0), random.uniform(0.1, 1.0));
+    };
+    half_a = any_half();
+    half_b = any_half();
+    shape_a = Box{half_a};
+    shape_b = Box{half_b};
+    pair.shape_a = &shape_a;
+    pair.shape_b = &shape_b;
+    pair.corners_a = *corners_of(shape_a);
+    pair.corners_b = *corners_of(shape_b);
+    const auto any_turn = [&](double size) {
+      const Vector3 way = any(random, size);
+      return Quaternion(1.0, way.x(), way.y(), way.z()).normalized();
+    };
+    // Some nearly as the other, so that edges are nearly parallel.
+    Pose a;
+    a.orientation = any_turn(2.0);
+    Pose b;
+    b.orientation = a.orientation * any_turn(std::pow(10.0, random.uniform(-6.0, 0.5)));
+    const Vector3 way = any(random, 1.0).normalized();
+    double low = 0.0;
+    double high = 10.0;
+    for (int k = 0; k < 100; ++k) {
+      b.position = 0.5 * (low + high) * way;
+      (gap_of_boxes(half_a, a, half_b, b) < static_cast<long double>(gap) ? low : high) =
+          b.position.norm();
+    }
+    pair.planes_b = {faces_of(shape_b)[0]};
+    if (((a.position - b.position).dot(b.orientation * pair.planes_b[0].direction)) > 0.0) {
+      pair.planes_b = {faces_of(shape_b)[1]};  // away from a
+    }
+    motion_a = Motion::at_rest({}, a);
+    motion_b = Motion::at_rest({}, b);
+    for (Motion* const motion : {&motion_a, &motion_b}) {
+      motion->duration = duration;
+      motion->position.resize(2);
+      motion->position[1] = any(random, std::pow(10.0, random.uniform(-8.0, 0.0)));
+      motion->position[2] = any(random, std::pow(10.0, random.uniform(-3.0, 2.0)));
+      motion->rotation = RotationKind::constant_rate;
+      motion->rotation_rate = any(random, std::pow(10.0, random.uniform(-6.0, 2.0)));
+    }
+  }
+
+  [[nodiscard]] long double apart(double s) const {
+    return gap_of_boxes(half_a, motion_a.pose(s), half_b, motion_b.pose(s));
+  }
+
+  TurningPair pair;
+  Shape shape_a;
+  Shape shape_b;
+  Vector3 half_a;
+  Vector3 half_b;
+  Motion motion_a;
+  Motion motion_b;
 };
 
 }  // namespace
@@ -171,6 +238,29 @@ TEST_CASE("separation watch: boxes whose edges cross are apart as long as that i
   // Both what is known at once and what is not are asked about.
   CHECK(all > 100);
   CHECK(none > 100);
+}
+
+TEST_CASE("separation watch: where the plane that touches tells nothing, another is found",
+          "[turning]") {
+  const std::uint64_t seed = 20261126;
+  INFO("seed " << seed);
+  Random random(seed);
+  int some = 0;
+  for (int trial = 0; trial < 4000; ++trial) {
+    CAPTURE(trial);
+    const double gap = std::pow(10.0, random.uniform(-9.0, -3.0));
+    const BoxesBeside boxes(random, gap);
+    SeparationWatch watch{boxes.pair, boxes.motion_a, boxes.motion_b, {}, {}};
+    const double until = watch.strike_time(duration);
+    long double least = 1.0L;
+    for (int k = 0; k <= 100 && until > 0.0; ++k) {
+      least = std::min(least, boxes.apart(until * k / 100.0));
+    }
+    CHECK(least > 0.0L);
+    some += until > 0.0 ? 1 : 0;
+  }
+  // Without another plane there is none; edges that may become parallel in the step are left out.
+  CHECK(some > 3000);
 }
 
 TEST_CASE("separation watch: of two balls that nothing holds none comes nearer than it may",

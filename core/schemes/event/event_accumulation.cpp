@@ -18,7 +18,7 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double small_way = 1e-3;
 /// Hops that die down are taken for rest below this part of the extent.
 constexpr double small_rest = 1e-10;
-/// Those that do not, below so many eps of coordinates and extent: no detector tells them from
+/// Those that do not, below so many eps of coordinates and extent: twice what `certified` takes for
 /// touch.
 constexpr double unresolved = 64.0;
 /// More contacts than these are not followed.

@@ -19,8 +19,8 @@ class EventAccumulation {
   EventAccumulation(EventRun& run, const EventMotions& motions);
 
   /// How small a hop is taken for rest, m: where hops die down those that would follow are summed
-  /// up, so that the height only has to be far below anything measured; otherwise only what the
-  /// coordinates cannot resolve.
+  /// up, so that the height only has to be far below anything measured; otherwise only what is
+  /// near the roundoff of coordinates and extents.
   [[nodiscard]] double rest_tolerance(BodyIndex a, BodyIndex b, double e) const;
 
   /// What impacts come to.
