@@ -27,6 +27,12 @@ double radius_of(const Shape& shape) {
   return std::isfinite(radius) ? radius : 0.0;
 }
 
+/// What a gap is a sum of, m: a box adds up its three half extents.
+double coordinates_of(const Shape& shape) {
+  const auto* box = std::get_if<Box>(&shape);
+  return box != nullptr ? box->half_extents.sum() : radius_of(shape);
+}
+
 /// A ball or box that reaches farther by `more`; nothing where it is something else.
 bool grow(Shape& shape, double more) {
   if (auto* ball = std::get_if<Sphere>(&shape)) {
@@ -173,16 +179,24 @@ double SceneWatch::momentum(const Event& event) const {
   return most;
 }
 
-/// Rounding of a rebound among several at once, m/s: impulses from two sides nearly cancel, and
-/// each is known to some epsilon of the greatest. What one does to the velocity of the contact is
-/// 1/m + r^2/I of it.
+/// What a rebound among several at once may be off by, m/s. Impulses from two sides nearly cancel,
+/// and each is known to some epsilon of the greatest; what one does to the velocity of the contact
+/// is 1/m + r^2/I of it. And faces in touch are apart by what their gaps are, thus tilted against
+/// each other: no velocity returns all their points as restitution has it, by tilt times speed.
 double SceneWatch::handed_on(const Event& event) const {
   if (at_once_.size() < 2) {
     return 0.0;
   }
   double greatest = 0.0;
+  double tilt = 0.0;
+  double speed = 0.0;
   for (const Event& other : at_once_) {
     greatest = std::max(greatest, momentum(other));
+    const double extent = std::min(smallest_extent(model_->shape(other.a)),  //
+                                   smallest_extent(model_->shape(other.b)));
+    tilt = std::max(tilt, std::abs(other.contact.gap) / extent);
+    speed = std::max(speed, std::abs(normal_velocity(other.contact, other.before_a,  //
+                                                     other.before_b)));
   }
   double response = 0.0;
   for (const auto& [i, state] : {std::pair{event.a, &event.after_a}, {event.b, &event.after_b}}) {
@@ -194,7 +208,7 @@ double SceneWatch::handed_on(const Event& event) const {
     response += 1.0 / inertia.mass;
     response += inertia.rotates ? arm * arm / inertia.principal.minCoeff() : 0.0;
   }
-  return 64.0 * epsilon * greatest * response;
+  return 64.0 * epsilon * greatest * response + tilt * speed;
 }
 
 void SceneWatch::check_overlap(std::span<const BodyState> bodies, Instant t) const {
@@ -220,10 +234,10 @@ void SceneWatch::check_pair(BodyIndex a, const BodyState& state_a, BodyIndex b,
                             const BodyState& state_b, Instant t) const {
   const Pose pose_b = seen(b, state_b.pose, a, state_a.pose);
   const double depth = plain_depth(model_->shape(a), state_a.pose, model_->shape(b), pose_b);
-  const double scale = state_a.pose.position.norm() + state_b.pose.position.norm() +
-                       radius_of(model_->shape(a)) + radius_of(model_->shape(b));
+  const double scale = state_a.pose.position.lpNorm<1>() + state_b.pose.position.lpNorm<1>() +
+                       coordinates_of(model_->shape(a)) + coordinates_of(model_->shape(b));
   // Bodies in touch may stay so to 16 times the bound of a gap's rounding, 12 eps of what it is a
-  // sum of (ccd/README.md, a start in touch); less is no overlap that could be told from none.
+  // sum of (ccd/README.md, eq. 11); less is no overlap that could be told from none.
   constexpr double hidden = 16.0 * 12.0 * epsilon;
   if (depth > hidden * scale) {
     throw BrokenPromise{Fate::overlap,

@@ -469,7 +469,7 @@ TEST_CASE("random scenes that once broke a promise", "[random]") {
       {1999, 60224, Fate::right, "a ball sank through a ball that lay on the floor"},
       {1999, 71544, Fate::right, "asked the same question for ever; hops on a ball on the floor"},
       {1999, 84136, Fate::right, "a ball sank through a ball that lay on the floor"},
-      {1999, 87189, Fate::right, "a ball sank through a box; now one is squashed on the floor"},
+      {1999, 87189, Fate::stopped, "a ball sank through a box; now one rests on it with e = 1"},
       {1999, 91884, Fate::right, "a ball sank through a ball that lay on the floor"},
       {4242, 15588, Fate::right, "what an impact turned into spin was no flow"},
       {1999, 70032, Fate::right, "a ball left a box at its edge and was on it, for ever"},
@@ -498,6 +498,16 @@ TEST_CASE("random scenes of bodies in touch that once broke a promise", "[random
     const Trial trial = try_scene(touching_scene(21, c.index));
     CAPTURE(c.index, c.what, trial.reason);
     CHECK(trial.fate == c.fate);
+  }
+}
+
+TEST_CASE("scenes of touching bodies that were judged by too little rounding", "[random]") {
+  // #8947: depth of a gap that is a sum of coordinates, not of lengths. The others: bodies that rest
+  // on two, nanometres apart and so tilted, are struck flat; no velocity suits all points.
+  for (const std::uint64_t index : {8947, 20656, 21960, 23819}) {
+    const Trial trial = try_scene(touching_scene(20261128, index));
+    CAPTURE(index, to_string(trial.fate), trial.reason);
+    CHECK_FALSE(trial.failed());
   }
 }
 
