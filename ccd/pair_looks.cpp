@@ -25,7 +25,8 @@ Look PairLooks::look(double t) {
 }
 
 double PairLooks::approach(const Look& at) const {
-  return -SeparationFunction(motion_, at.k, motion_.bounds(at.t(), 0.0), at.witness).rate();
+  const TurnBounds now{.until = at.t(), .w_a = at.k.w_a.norm(), .w_b = at.k.w_b.norm()};
+  return -SeparationFunction(motion_, at.k, now, at.witness).rate();
 }
 
 double PairLooks::step_along(const Kinematics& k, const Witness& witness, const TurnBounds& bounds,

@@ -2,6 +2,7 @@
 
 #include "ccd/core_of_shape.hpp"
 #include "ccd/plane_normal.hpp"
+#include "ccd/rotation_bounds.hpp"
 #include "ccd/rounding/rotation_matrix.hpp"
 #include "ccd/rounding/roundoff.hpp"
 #include "ccd/sine_cosine.hpp"
@@ -88,34 +89,19 @@ void orient(const Motion& motion, double rate, double s, bool turns, Matrix3& R,
   }
 }
 
-/// Upper bound of |p| on [s0, s1] by its Bernstein coefficients, or of |p - p(s0)|.
-template <int Dim>
-double hull_bound(const Polynomial<Dim>& p, double s0, double s1, bool from_start) {
-  std::array<typename Polynomial<Dim>::Value, Polynomial<Dim>::max_degree + 1> b;
+/// Upper bound of |p - p(s0)| on [s0, s1] by Bernstein coefficients.
+double bound_from_start(const Polynomial<3>& p, double s0, double s1) {
+  std::array<Polynomial<3>::Value, Polynomial<3>::max_degree + 1> b;
   bernstein(p, s0, s1, b);
   double largest = 0.0;
   double size = 0.0;
   const double reach = std::abs(s0) + 2.0 * (s1 - s0);
   for (int k = p.degree(); k >= 0; --k) {
     const auto& value = b[static_cast<std::size_t>(k)];
-    largest = std::max(largest, from_start ? (value - b[0]).norm() : value.norm());
+    largest = std::max(largest, (value - b[0]).norm());
     size = size * reach + p[k].norm();
   }
   return largest * (1.0 + 8.0 * u) + 24.0 * (p.degree() + 1) * u * size;
-}
-
-/// |alpha| <= 2 |Q''| / |Q| + 4 (|Q'| / |Q|)^2, from differentiating w = 2 Im(Q' Q*) / |Q|^2.
-double angular_acceleration_bound(const Motion& motion, double s0, double s1, double w) {
-  if (motion.rotation != RotationKind::polynomial || motion.quaternion.degree() == 0) {
-    return 0.0;
-  }
-  if (!std::isfinite(w)) {  // |Q| may vanish
-    return w;
-  }
-  const Polynomial<4> first = motion.quaternion.differentiated();
-  const double rate = hull_bound(first, s0, s1, false);
-  const double least = 1.998 * rate / w;  // the lower bound of |Q| that gave w, to be safe
-  return rate > 0.0 ? 2.0 * hull_bound(first.differentiated(), s0, s1, false) / least + w * w : 0.0;
 }
 
 }  // namespace
@@ -407,19 +393,21 @@ TurnBounds PairMotion::bounds(double t, double horizon) const {
   const double s0_b = s_b_ + t;
   const double s1_b = s_b_ + turn.until;
   if (turns_a_) {
-    turn.w_a = motion_a_->angular_speed_bound(s0_a, s1_a);
-    turn.alpha_a = angular_acceleration_bound(*motion_a_, s0_a, s1_a, turn.w_a);
+    const RotationBounds a = rotation_bounds(*motion_a_, s0_a, s1_a);
+    turn.w_a = a.speed;
+    turn.alpha_a = a.acceleration;
   }
   if (turns_b_) {
-    turn.w_b = motion_b_->angular_speed_bound(s0_b, s1_b);
-    turn.alpha_b = angular_acceleration_bound(*motion_b_, s0_b, s1_b, turn.w_b);
+    const RotationBounds b = rotation_bounds(*motion_b_, s0_b, s1_b);
+    turn.w_b = b.speed;
+    turn.alpha_b = b.acceleration;
   }
   turn.bend = bend(t, turn.until);
   return turn;
 }
 
 double PairMotion::bend(double t, double t1) const {
-  return d_.degree() > 2 ? hull_bound(curvature_, t, t1, true) : 0.0;
+  return d_.degree() > 2 ? bound_from_start(curvature_, t, t1) : 0.0;
 }
 
 double PairMotion::speed_bound(const Kinematics& k, const TurnBounds& turn, double horizon) const {
