@@ -502,8 +502,8 @@ TEST_CASE("random scenes of bodies in touch that once broke a promise", "[random
 }
 
 TEST_CASE("scenes of touching bodies that were judged by too little rounding", "[random]") {
-  // #8947: depth of a gap that is a sum of coordinates, not of lengths. The others: bodies that rest
-  // on two, nanometres apart and so tilted, are struck flat; no velocity suits all points.
+  // #8947: depth of a gap that is a sum of coordinates, not of lengths. The others: bodies that
+  // rest on two, nanometres apart and so tilted, are struck flat; no velocity suits all points.
   for (const std::uint64_t index : {8947, 20656, 21960, 23819}) {
     const Trial trial = try_scene(touching_scene(20261128, index));
     CAPTURE(index, to_string(trial.fate), trial.reason);
