@@ -77,15 +77,14 @@ std::pair<Series, Series> cosine_and_sine(const Series& y) {
   return {cosine, sine};
 }
 
-/// direction * series + offset.
+/// Makes `p` direction * series.
 template <int Dim>
-Polynomial<Dim> along(const Series& series, const typename Polynomial<Dim>::Value& direction) {
-  Polynomial<Dim> p;
+void set_along(Polynomial<Dim>& p, const Series& series,
+               const typename Polynomial<Dim>::Value& direction) {
   p.resize(degree);
   for (int k = 0; k <= degree; ++k) {
     p[k] = direction * series[static_cast<std::size_t>(k)];
   }
-  return p;
 }
 
 Vector4 components(const Quaternion& q) { return {q.w(), q.x(), q.y(), q.z()}; }
@@ -118,10 +117,10 @@ Motion Sinusoid::motion(Instant t, double at_most) const {
   motion.quaternion[0] = components(o.centre.orientation);
 
   const double theta = turn + o.phase;
-  motion.position = along<3>(sine_series(theta, w), o.amplitude);
+  set_along<3>(motion.position, sine_series(theta, w), o.amplitude);
   motion.position[0] += o.centre.position;
   // Its own series, not the derivative of the position's: one order better.
-  motion.velocity = along<3>(sine_series(theta + 0.5 * std::numbers::pi, w), o.amplitude * w);
+  set_along<3>(motion.velocity, sine_series(theta + 0.5 * std::numbers::pi, w), o.amplitude * w);
   const double angle = w * motion.duration;
   const double fifth = angle * angle * angle * angle * angle;
   const double advance = fifth * fifth / tenth_factorial;
@@ -143,15 +142,16 @@ Motion Sinusoid::motion(Instant t, double at_most) const {
   const Quaternion& q = o.centre.orientation;
   const Vector3& axis = o.rotation_axis;
   const Quaternion turned = Quaternion(0.0, axis.x(), axis.y(), axis.z()) * q;
-  const Polynomial<4> scalar = along<4>(cosine, components(q));
-  const Polynomial<4> vector = along<4>(sine, components(turned));
+  const Vector4 along_q = components(q);
+  const Vector4 along_turned = components(turned);
   motion.rotation = RotationKind::polynomial;
   motion.quaternion.resize(degree);
   for (int k = 0; k <= degree; ++k) {
-    motion.quaternion[k] = scalar[k] + vector[k];
+    const auto at = static_cast<std::size_t>(k);
+    motion.quaternion[k] = along_q * cosine[at] + along_turned * sine[at];
   }
-  motion.angular_velocity =
-      along<3>(sine_series(swing + 0.5 * std::numbers::pi, w), axis * (o.rotation_amplitude * w));
+  set_along<3>(motion.angular_velocity, sine_series(swing + 0.5 * std::numbers::pi, w),
+               axis * (o.rotation_amplitude * w));
   // Two unit quaternions d apart turn a point at radius r by at most 4 d r asin-corrected; the
   // truncated one is normalised, which at most doubles its distance.
   const double half_swing = 0.5 * std::abs(o.rotation_amplitude);
