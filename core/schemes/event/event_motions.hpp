@@ -38,6 +38,13 @@ class EventMotions {
   [[nodiscard]] Instant end_of(BodyIndex i) const { return start_of(i) + duration_of(i); }
   /// A shape with the motion that it has, for as long as this lives.
   [[nodiscard]] MotionTable::Moving moving(BodyIndex i) const { return table_.moving(i); }
+  /// No coordinate of body i is greater in the first `s` seconds of its motion, m.
+  [[nodiscard]] double coordinates_reached(BodyIndex i, double s) const {
+    return table_.coordinates_reached(i, s);
+  }
+  [[nodiscard]] double error_radius(BodyIndex i) const {
+    return flies_parabola(i) ? 0.0 : table_.error_radius(i);
+  }
   /// Whether its flight is all there is to know of the motion of i.
   [[nodiscard]] bool is_flight(BodyIndex i) const {
     return flies_parabola(i) || table_.is_flight(i);

@@ -586,35 +586,16 @@ double EventPredictor::allowed_gap(const PairQuery& of) const {
                    run_.model.scene().periodic->shift(of.image).lpNorm<1>();
 }
 
-/// The largest coordinate that body i reaches in an epoch or before its motion ends, m.
-double EventPredictor::coordinates_reached(BodyIndex i) const {
-  if (motions_.is_flight(i)) {
-    const BallFlight flight = motions_.flight(i);
-    return (0.5 * flight.acceleration.lpNorm<Eigen::Infinity>() * run_.epoch() +
-            flight.velocity.lpNorm<Eigen::Infinity>()) *
-               run_.epoch() +
-           flight.position.lpNorm<Eigen::Infinity>();
-  }
-  const auto moving = motions_.moving(i);
-  const Motion& motion = moving.motion();
-  const double s = std::min(motion.duration, run_.epoch());
-  double reached = 0.0;
-  for (int k = motion.position.degree(); k >= 0; --k) {
-    reached = reached * s + motion.position[k].lpNorm<Eigen::Infinity>();
-  }
-  return reached;
-}
-
 double EventPredictor::touching_gap(BodyIndex a, BodyIndex b) const {
   double coordinates = 0.0;
   double radii = 0.0;
   double errors = 0.0;
   double extent = std::numeric_limits<double>::infinity();
   for (const BodyIndex i : {a, b}) {
-    coordinates += coordinates_reached(i);
+    coordinates += motions_.coordinates_reached(i, run_.epoch());
     const double radius = bounding_radius(run_.model.shape(i));
     radii += std::isfinite(radius) ? radius : 0.0;
-    errors += motions_.is_flight(i) ? 0.0 : motions_.moving(i).motion().error_radius;
+    errors += motions_.error_radius(i);
     extent = std::min(extent, smallest_extent(run_.model.shape(i)));
   }
   const double asked = run_.options.toi_tolerance;

@@ -133,7 +133,6 @@ class EventPredictor {
                                                              const Window& window) const;
   [[nodiscard]] Motion motion_of(BodyIndex i, const PairQuery& of) const;
   [[nodiscard]] double allowed_gap(const PairQuery& of) const;
-  [[nodiscard]] double coordinates_reached(BodyIndex i) const;
   void push_meeting(const PairQuery& of, const TimeOfImpact& toi);
   void look_nearer(const PairQuery& query, TimeOfImpact toi);
   void predict_parting(const PairQuery& query, DueKind kind);

@@ -203,5 +203,33 @@ BodyState MotionTable::at(BodyIndex i, Instant t) const {
   return {{p, orientation(i)}, {v, Vector3::Zero()}};
 }
 
+double MotionTable::coordinates_reached(BodyIndex i, double s) const {
+  if (is_flight(i)) {
+    const BallFlight flight = this->flight(i);
+    return (0.5 * flight.acceleration.lpNorm<Eigen::Infinity>() * s +
+            flight.velocity.lpNorm<Eigen::Infinity>()) *
+               s +
+           flight.position.lpNorm<Eigen::Infinity>();
+  }
+  if (whole_.empty()) {
+    const StoredMotion& motion = others_[place_[i]];
+    return motion.coordinates_reached(std::min(motion.duration(), s));
+  }
+  const Motion& motion = whole_[i];
+  const double end = std::min(motion.duration, s);
+  double reached = 0.0;
+  for (int k = motion.position.degree(); k >= 0; --k) {
+    reached = reached * end + motion.position[k].lpNorm<Eigen::Infinity>();
+  }
+  return reached;
+}
+
+double MotionTable::error_radius(BodyIndex i) const {
+  if (is_flight(i)) {
+    return 0.0;
+  }
+  return whole_.empty() ? others_[place_[i]].error_radius() : whole_[i].error_radius;
+}
+
 }  // namespace core
 }  // namespace kairos

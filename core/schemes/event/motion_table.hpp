@@ -107,6 +107,11 @@ class MotionTable {
     return whole_.empty() ? Moving(model_.shape(i), *this, i) : Moving(model_.shape(i), whole_[i]);
   }
 
+  /// No coordinate of body i is greater in the first `s` seconds of its motion, m.
+  [[nodiscard]] double coordinates_reached(BodyIndex i, double s) const;
+  /// m.
+  [[nodiscard]] double error_radius(BodyIndex i) const;
+
  private:
   /// How a flight is told as a motion.
   struct Form {

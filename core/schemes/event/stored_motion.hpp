@@ -3,8 +3,10 @@
 #include "core/motion.hpp"
 #include "core/state.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -70,7 +72,19 @@ class StoredMotion {
             {value(v, degrees_[1], s), Vector3::Zero()}};
   }
 
+  /// No coordinate is greater up to local time s, m.
+  [[nodiscard]] double coordinates_reached(double s) const {
+    const double* p = is_long_ ? more_->data() : coefficients_.data();
+    double reached = 0.0;
+    for (int k = degrees_[0]; k >= 0; --k) {
+      const double* c = p + 3 * k;
+      reached = reached * s + std::max({std::abs(c[0]), std::abs(c[1]), std::abs(c[2])});
+    }
+    return reached;
+  }
+
   [[nodiscard]] Instant start() const { return start_; }
+  [[nodiscard]] double error_radius() const { return error_radius_; }
   [[nodiscard]] double duration() const { return duration_; }
   [[nodiscard]] Instant end() const { return start_ + duration_; }
 
