@@ -27,7 +27,9 @@ double EnergyLedger::unexplained() const {
   rest.add(potential_);
   rest.add(-initial_potential_);
   for (const CompensatedSum& line : lines_) {
-    rest.add(-line.value());
+    if (const double value = line.value(); value != 0.0) {
+      rest.add(-value);
+    }
   }
   return rest.value();
 }

@@ -16,6 +16,18 @@ double finite_radius(const Shape& shape) {
   return std::isfinite(radius) ? radius : 0.0;
 }
 
+/// Whether a ball of this radius about the origin of a body is above a half-space by far more than
+/// roundoff.
+bool clear_of(const Shape& shape, const Pose& pose, const Vector3& origin, double radius) {
+  const auto* half_space = std::get_if<HalfSpace>(&shape);
+  if (half_space == nullptr) {
+    return false;
+  }
+  const Vector3 up = half_space_normal(*half_space, pose);
+  const double sizes = origin.lpNorm<1>() + pose.position.lpNorm<1>() + radius;
+  return up.dot(origin - pose.position) > radius + 1e-9 * sizes;
+}
+
 bool held(BodyIndex a, BodyIndex b, std::span<const char> in_hand) {
   return !in_hand.empty() && (in_hand[a] != 0 || in_hand[b] != 0);
 }
@@ -81,8 +93,11 @@ double PenetrationProbe::depth(BodyIndex a, const Pose& pose_a, BodyIndex b,
   }
   const Shape& shape_a = model_.shape(a);
   const Shape& shape_b = model_.shape(b);
-  const double reach = bounding_radius(shape_a) + bounding_radius(shape_b);
-  if ((pose_a.position - pose_b.position).norm() > reach) {
+  const double radius_a = bounding_radius(shape_a);
+  const double radius_b = bounding_radius(shape_b);
+  if ((pose_a.position - pose_b.position).norm() > radius_a + radius_b ||
+      clear_of(shape_a, pose_a, pose_b.position, radius_b) ||
+      clear_of(shape_b, pose_b, pose_a.position, radius_a)) {
     return 0.0;
   }
   const double gap = detector_->overlap(shape_a, pose_a, shape_b, pose_b).gap;
