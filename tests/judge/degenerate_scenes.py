@@ -11,7 +11,7 @@ What a scene may not do, whatever becomes of it: end by a signal or without a re
 20 s of processor time for a tenth of its duration, write a NaN, show two solids in one another at a
 frame, leave energy unexplained. A part of the scenes runs again where nothing may change: bodies listed
 in another order, interrupted and resumed (the same bytes), half the frame time (the same bodies meet in
-the same order, up to the first stop).
+the same order, up to the first stop or contact that lasts).
 Runs that stop with a reason are counted by that reason; scenes that are refused are faults here.
 """
 
@@ -19,6 +19,7 @@ import argparse
 import collections
 import concurrent.futures
 import csv
+import itertools
 import json
 import math
 import pathlib
@@ -388,8 +389,10 @@ class Run:
         return {f.name: f.read_bytes() for f in self.folder.glob("*.csv")}
 
     def meetings(self):
-        """Who met, in order. An edge that lands with both its corners is one impact, or two at one instant."""
+        """Who met, in order, until a contact lasted: bodies that turn in touch take steps of a frame at most.
+        An edge that lands with both its corners is one impact, or two at one instant."""
         told = [(row["t"], row["kind"], row["a"], row["b"]) for row in self.rows("events.csv")]
+        told = list(itertools.takewhile(lambda row: row[1] != "contact-begins", told))
         return [here[1:] for before, here in zip([None, *told], told) if here != before]
 
     def states(self):
