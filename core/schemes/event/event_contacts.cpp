@@ -193,9 +193,38 @@ bool EventContacts::could_be_supported(BodyIndex a, BodyIndex b, Instant t) cons
   return false;
 }
 
+/// When corners that only just meet, and part as far as their first rates tell, approach within a
+/// bracket that proves that they overlap, s; 0: not, or only deeper than roundoff.
+double EventContacts::comes_together(BodyIndex a, BodyIndex b, Instant t, double bracket) const {
+  constexpr int most_halvings = 40;
+  if (!run_.detector.info().proves || run_.model.scene().periodic) {
+    return 0.0;
+  }
+  double radii = 0.0;
+  for (const BodyIndex i : {a, b}) {
+    const double radius = bounding_radius(run_.model.shape(i));
+    radii += std::isfinite(radius) ? radius : 0.0;
+  }
+  double h = bracket;
+  for (int k = 0; k < most_halvings && t < t + h; ++k, h *= 0.5) {
+    const BodyState at_a = motions_.at(a, t + h);
+    const BodyState at_b = motions_.at(b, t + h);
+    const Overlap o =
+        run_.detector.overlap(run_.model.shape(a), at_a.pose, run_.model.shape(b), at_b.pose);
+    const double sizes = at_a.pose.position.lpNorm<1>() + at_b.pose.position.lpNorm<1>() +
+                         smallest_extent(run_.model.shape(a)) +
+                         smallest_extent(run_.model.shape(b));
+    if (o.gap >= -64.0 * std::numeric_limits<double>::epsilon() * sizes) {
+      return normal_velocity({o.point, o.normal, o.gap}, at_a, at_b) < 0.0 ? h : 0.0;
+    }
+  }
+  return 0.0;
+}
+
 /// The two are in touch and do not approach: there is no impact, and no event to record. They go on
 /// as before, unless they come to rest.
-void EventContacts::touch(BodyIndex a, BodyIndex b, const Contact& contact, Instant t) {
+void EventContacts::touch(BodyIndex a, BodyIndex b, const Contact& contact, Instant t,
+                          double bracket) {
   if (lands(a, b, contact, t)) {
     return;
   }
@@ -214,6 +243,9 @@ void EventContacts::touch(BodyIndex a, BodyIndex b, const Contact& contact, Inst
   if (accumulation_.stalls(a, b, t, least_progress * run_.epoch())) {
     if (settle_stalled(pair, t)) {
       return;
+    }
+    if (const double until = comes_together(a, b, t, bracket); until > 0.0) {
+      return run_.agenda.push(t + until, DueKind::impact, a, b);
     }
     depart(a, b, t);
     return run_.stop(t,
@@ -324,6 +356,9 @@ bool EventContacts::lands(BodyIndex a, BodyIndex b, const Contact& contact, Inst
       }
       if (!accumulation_.stalls(a, b, t, least_progress * run_.epoch())) {
         continue;  // each surface in turn slows it down
+      }
+      if (settle_stalled(pair, t)) {
+        return true;
       }
       const BodyIndex other = motions_.support(ball)->surface;
       depart(a, b, t);

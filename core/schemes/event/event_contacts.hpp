@@ -81,6 +81,7 @@ class EventContacts {
                                                             const BodyInertia& inertia_b) const;
   [[nodiscard]] bool strikes_flat(Event& event);
   void press_together(Event& event, const ContactManifold& manifold);
+  [[nodiscard]] double roundoff_of_rate(const Contact& contact, BodyIndex a, BodyIndex b) const;
   [[nodiscard]] bool still_approaching(const Event& event, double approach, Instant t);
   [[nodiscard]] bool settle(std::span<const BodyIndex> seeds, Instant t,
                             const EventModes::SettleOptions& options = {});
@@ -110,7 +111,8 @@ class EventContacts {
   [[nodiscard]] Contact contact_at(BodyIndex a, BodyIndex b, Instant t, double bracket) const;
   void look_again(BodyIndex a, BodyIndex b, Instant t, double bracket);
   [[nodiscard]] double passes_by(BodyIndex a, BodyIndex b, Instant t) const;
-  void touch(BodyIndex a, BodyIndex b, const Contact& contact, Instant t);
+  [[nodiscard]] double comes_together(BodyIndex a, BodyIndex b, Instant t, double bracket) const;
+  void touch(BodyIndex a, BodyIndex b, const Contact& contact, Instant t, double bracket);
   [[nodiscard]] bool lands(BodyIndex a, BodyIndex b, const Contact& contact, Instant t);
   [[nodiscard]] bool leaves_for(BodyIndex ball, const Support& other, double tolerance, Instant t);
   void settle(BodyIndex ball, const Support& support, double pressing, double e, Instant t);

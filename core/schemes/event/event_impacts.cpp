@@ -155,7 +155,7 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double bracket, 
   event.contact = landing ? landing->contact : contact_at(a, b, t, bracket);
   const double approach = normal_velocity(event.contact, motions_.now(a), motions_.now(b));
   const std::array<BodyIndex, 2> pair{a, b};
-  if (!decided && approach >= 0.0 && bracket > 0.0) {
+  if (!decided && bracket > 0.0 && approach >= -roundoff_of_rate(event.contact, a, b)) {
     if (!could_be_supported(a, b, t) && settle(pair, t, {.pressed = BodyPair{a, b}})) {
       return;
     }
@@ -163,7 +163,7 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double bracket, 
     return moved ? relaunch(a, b, t) : look_again(a, b, t, bracket);
   }
   if (approach >= 0.0 && run_.law.info().needs_contact) {
-    return touch(a, b, event.contact, t);
+    return touch(a, b, event.contact, t, bracket);
   }
   if (const double past = moved ? 0.0 : passes_by(a, b, t); past > 0.0) {
     return run_.agenda.push(t + past, DueKind::recheck, a, b);
@@ -175,6 +175,20 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double bracket, 
                                  run_.detector.info().name, run_.names(a, b), event.contact.gap));
   }
   meet(event, t);
+}
+
+/// What `normal_velocity` may be off by: an approach below it, of which the detector does not prove
+/// that it leads anywhere, is none.
+double EventContacts::roundoff_of_rate(const Contact& contact, BodyIndex a, BodyIndex b) const {
+  double terms = 0.0;
+  for (const BodyIndex i : {a, b}) {
+    const BodyState& state = motions_.now(i);
+    const Vector3 arm = contact.point - state.pose.position;
+    terms += contact.normal.cwiseAbs().dot(state.twist.linear.cwiseAbs()) +
+             state.twist.angular.norm() *
+                 (arm.lpNorm<1>() + state.pose.position.lpNorm<Eigen::Infinity>());
+  }
+  return 64.0 * epsilon * terms;
 }
 
 /// Two bodies that approach each other strike, and with them those that they touch.
