@@ -351,8 +351,8 @@ TEST_CASE("random scenes of bodies in touch that stopped once", "[random]") {
     CHECK(trial.fate == Fate::right);
   }
   // Blocks that meet at a corner only and part as far as first rates tell; a ball in a groove with
-  // another on it; an approach that is roundoff of a spin; looks between impacts of one instant.
-  for (const std::uint64_t index : {510U, 854U, 280U, 629U, 794U, 121U, 170U}) {
+  // another on it; an approach that is roundoff of a spin.
+  for (const std::uint64_t index : {510U, 854U, 280U, 629U, 794U, 121U}) {
     const Trial trial = try_scene(touching_scene(20261128, index));
     CAPTURE(index, trial.reason);
     CHECK(trial.fate == Fate::right);
@@ -513,6 +513,16 @@ TEST_CASE("scenes of touching bodies that were judged by too little rounding", "
   // rest on two, nanometres apart and so tilted, are struck flat; no velocity suits all points.
   for (const std::uint64_t index : {8947, 20656, 21960, 23819}) {
     const Trial trial = try_scene(touching_scene(20261128, index));
+    CAPTURE(index, to_string(trial.fate), trial.reason);
+    CHECK_FALSE(trial.failed());
+  }
+}
+
+TEST_CASE("what is held where edges cross ends where they part", "[random]") {
+  // A block that tips over another's edge was held by it for a millisecond longer, 1.4 mm apart:
+  // the crossing of two edges has no rim, and the step was as long as a frame.
+  for (const std::uint64_t index : {7128, 11741}) {
+    const Trial trial = try_scene(touching_scene(20261201, index));
     CAPTURE(index, to_string(trial.fate), trial.reason);
     CHECK_FALSE(trial.failed());
   }

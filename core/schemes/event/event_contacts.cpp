@@ -211,9 +211,7 @@ double EventContacts::comes_together(BodyIndex a, BodyIndex b, Instant t, double
     const BodyState at_b = motions_.at(b, t + h);
     const Overlap o =
         run_.detector.overlap(run_.model.shape(a), at_a.pose, run_.model.shape(b), at_b.pose);
-    const double sizes = at_a.pose.position.lpNorm<1>() + at_b.pose.position.lpNorm<1>() +
-                         smallest_extent(run_.model.shape(a)) +
-                         smallest_extent(run_.model.shape(b));
+    const double sizes = at_a.pose.position.lpNorm<1>() + at_b.pose.position.lpNorm<1>() + radii;
     if (o.gap >= -64.0 * std::numeric_limits<double>::epsilon() * sizes) {
       return normal_velocity({o.point, o.normal, o.gap}, at_a, at_b) < 0.0 ? h : 0.0;
     }

@@ -81,7 +81,8 @@ class EventContacts {
                                                             const BodyInertia& inertia_b) const;
   [[nodiscard]] bool strikes_flat(Event& event);
   void press_together(Event& event, const ContactManifold& manifold);
-  [[nodiscard]] double roundoff_of_rate(const Contact& contact, BodyIndex a, BodyIndex b) const;
+  [[nodiscard]] double no_approach(const Contact& contact, BodyIndex a, BodyIndex b,
+                                   double bracket) const;
   [[nodiscard]] bool still_approaching(const Event& event, double approach, Instant t);
   [[nodiscard]] bool settle(std::span<const BodyIndex> seeds, Instant t,
                             const EventModes::SettleOptions& options = {});

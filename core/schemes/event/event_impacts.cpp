@@ -155,7 +155,7 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double bracket, 
   event.contact = landing ? landing->contact : contact_at(a, b, t, bracket);
   const double approach = normal_velocity(event.contact, motions_.now(a), motions_.now(b));
   const std::array<BodyIndex, 2> pair{a, b};
-  if (!decided && bracket > 0.0 && approach >= -roundoff_of_rate(event.contact, a, b)) {
+  if (!decided && bracket > 0.0 && approach >= -no_approach(event.contact, a, b, bracket)) {
     if (!could_be_supported(a, b, t) && settle(pair, t, {.pressed = BodyPair{a, b}})) {
       return;
     }
@@ -177,18 +177,21 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double bracket, 
   meet(event, t);
 }
 
-/// What `normal_velocity` may be off by: an approach below it, of which the detector does not prove
-/// that it leads anywhere, is none.
-double EventContacts::roundoff_of_rate(const Contact& contact, BodyIndex a, BodyIndex b) const {
-  double terms = 0.0;
+/// An approach below this, m/s, of which the detector does not prove that it leads anywhere, is
+/// none: it is roundoff of what it is a sum of, and the way of a whole bracket is roundoff of a
+/// gap.
+double EventContacts::no_approach(const Contact& contact, BodyIndex a, BodyIndex b,
+                                  double bracket) const {
+  double rates = 0.0;
+  double sizes = 0.0;
   for (const BodyIndex i : {a, b}) {
     const BodyState& state = motions_.now(i);
-    const Vector3 arm = contact.point - state.pose.position;
-    terms += contact.normal.cwiseAbs().dot(state.twist.linear.cwiseAbs()) +
-             state.twist.angular.norm() *
-                 (arm.lpNorm<1>() + state.pose.position.lpNorm<Eigen::Infinity>());
+    const double arm = (contact.point - state.pose.position).lpNorm<1>();
+    sizes += arm;
+    rates += contact.normal.cwiseAbs().dot(state.twist.linear.cwiseAbs()) +
+             state.twist.angular.norm() * (arm + state.pose.position.lpNorm<Eigen::Infinity>());
   }
-  return 64.0 * epsilon * terms;
+  return std::min(64.0 * epsilon * rates, epsilon * sizes / bracket);
 }
 
 /// Two bodies that approach each other strike, and with them those that they touch.

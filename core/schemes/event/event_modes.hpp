@@ -180,6 +180,7 @@ class EventModes {
   [[nodiscard]] bool goes_on_implicitly(const Gathered& found, Instant t) const;
   [[nodiscard]] static bool has_joints(const Gathered& found);
   void find_forces(const Gathered& found, Turning& turning, Instant t);
+  [[nodiscard]] bool ends_in_touch(const Gathered& found, const Turning& turning) const;
   [[nodiscard]] bool step_over(const Gathered& found, Turning& turning, Instant t,
                                bool pressed_or_not);
   static void count_implicit(const Turning& turning, const std::pair<int, int>& left, bool is_short,

@@ -31,9 +31,6 @@ void ImpactHistory::add(const Impact& impact, Instant t) {
   crept_ += creeps ? 1 : 0;
   const bool again = !first && impact.partner == last_partner_;
   resting_ = impact.rest ? (again ? resting_ + 1 : 1) : 0;
-  if (!impact.rest) {
-    go_on();  // an impact worth the name changes something
-  }
   last_ = t;
   last_partner_ = static_cast<std::uint32_t>(impact.partner);
 }

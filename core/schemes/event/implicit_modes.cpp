@@ -84,7 +84,8 @@ bool EventModes::step_over(const Gathered& found, Turning& turning, Instant t,
     turning.step = turning_step(turning.group, turning.mode, *stepper, t, h);
     turning.step.halved = turning.step.halved || halved;
     const bool made = turning.step.refusal.empty() && turning.step.duration > least_part * h;
-    if (made && short_steps(found) <= TurningLimits::most_short_steps) {
+    const bool parts = made && h > least_part * frame && !ends_in_touch(found, turning);
+    if (made && !parts && short_steps(found) <= TurningLimits::most_short_steps) {
       return true;
     }
   }

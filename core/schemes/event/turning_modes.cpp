@@ -23,6 +23,8 @@ constexpr double least_gap = 1.0 / 16.0;
 constexpr double rough = 1e8;
 /// Steps that are shorter than this part of a frame are short: see `TurningLimits`.
 constexpr double short_step = 1e-4;
+/// Steps are not shortened below this part of a frame to end where bodies still touch.
+constexpr double least_in_touch = 1e-9;
 /// A body that turns has so many steps in a frame at most.
 constexpr int most_steps = 4000;
 
@@ -116,8 +118,13 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
     return false;
   }
   if (!turning.mode.implicit) {
-    const std::unique_ptr<Stepper> stepper = stepper_(longest);
-    turning.step = turning_step(turning.group, turning.mode, *stepper, t, longest);
+    double h = longest;
+    do {
+      const std::unique_ptr<Stepper> stepper = stepper_(h);
+      turning.step = turning_step(turning.group, turning.mode, *stepper, t, h);
+      turning.step.halved = turning.step.halved || h < longest;
+      h = 0.5 * turning.step.duration;
+    } while (h > least_in_touch * frame && !ends_in_touch(found, turning));
     if (!(turning.step.duration > 0.0)) {
       turning.mode.refusal = turning.step.refusal.empty()
                                  ? "a corner of a body in touch is to strike at once"
@@ -132,6 +139,32 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
   run_.cost.right_hand_sides += turning.step.evaluations;
   tell_jam(found, turning, t);
   carry_on(found, turning, t, adopt);
+  return true;
+}
+
+/// Whether what is held where edges cross, which moves along them and is no rim, still touches at
+/// the end of a step.
+bool EventModes::ends_in_touch(const Gathered& found, const Turning& turning) const {
+  const std::vector<Touch>& touches = turning.group.start.touches;
+  for (std::size_t k = 0; k < touches.size(); ++k) {
+    const Touch& touch = touches[k];
+    const BodyIndex a = found.bodies[touch.a];
+    const BodyIndex b = found.bodies[touch.b];
+    const auto ends_nowhere = [&](BodyIndex i) {  // or is not known where it is then
+      return std::holds_alternative<HalfSpace>(run_.model.shape(i)) ||
+             run_.model.mobility(i) == Mobility::driven;
+    };
+    if (!turning.group.rims[k].empty() || ends_nowhere(a) || ends_nowhere(b) ||
+        turning.mode.choices[k].does == FrictionChoice::Does::opens) {
+      continue;
+    }
+    const Overlap end =
+        run_.detector.overlap(run_.model.shape(a), turning.step.states[touch.a].pose,
+                              run_.model.shape(b), turning.step.states[touch.b].pose);
+    if (end.gap > predictor_.touching_gap(a, b)) {
+      return false;
+    }
+  }
   return true;
 }
 
