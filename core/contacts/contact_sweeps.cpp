@@ -1,5 +1,6 @@
 #include "core/contacts/contact_sweeps.hpp"
 
+#include "core/contacts/cone_newton.hpp"
 #include "core/contacts/coulomb_cone.hpp"
 
 #include <Eigen/Geometry>
@@ -18,6 +19,10 @@ constexpr int damped_from = 1000;
 /// in so many more, change what rounding does: others would do the same.
 constexpr double nearly_settled = 1e4;
 constexpr int idle_sweeps = 64;
+/// What has not settled after so many sweeps, and after four times as many again and again, is
+/// looked for at all touches at once, if there are not too many.
+constexpr int newton_after = 64;
+constexpr std::size_t most_at_once = 32;
 
 }  // namespace
 
@@ -51,7 +56,7 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
                                           std::span<const Vector3> rates,
                                           std::span<const Vector3> begin, double settled,
                                           bool rubs) const {
-  Swept swept{std::vector<Vector3>(blocks_.size(), Vector3::Zero()), std::move(velocities)};
+  Swept swept{std::vector<Vector3>(blocks_.size(), Vector3::Zero()), velocities};
   std::vector<Vector3> along(blocks_.size(), Vector3::Zero());
   for (std::size_t k = 0; k < blocks_.size() && !begin.empty(); ++k) {
     along[k] = blocks_[k].axes * begin[k];
@@ -59,6 +64,7 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
   }
   double least = nearly_settled * settled;
   int idle = 0;
+  int at_once = blocks_.size() <= most_at_once ? newton_after : most_sweeps;
   for (int round = 0; round < most_sweeps; ++round) {
     swept.changed = 0.0;
     swept.solves += static_cast<int>(blocks_.size());
@@ -84,11 +90,49 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
     } else if (swept.changed <= nearly_settled * settled && ++idle >= idle_sweeps) {
       break;
     }
+    if (round == at_once) {
+      at_once *= 4;
+      settle_at_once(velocities, rates, settled, rubs, along, swept.velocities);
+    }
   }
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     swept.impulse[k] = blocks_[k].axes.transpose() * along[k];
   }
   return swept;
+}
+
+/// Goes to what Newton's method finds from here on; the sweeps that follow judge it.
+void ContactSweeps::settle_at_once(const std::vector<Vector6>& free, std::span<const Vector3> rates,
+                                   double settled, bool rubs, std::vector<Vector3>& along,
+                                   std::vector<Vector6>& velocities) const {
+  const std::size_t n = blocks_.size();
+  const auto size = static_cast<Eigen::Index>(3 * n);
+  ConeProblem problem{Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd(size), {}};
+  Eigen::VectorXd begin(size);
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto at = static_cast<Eigen::Index>(3 * k);
+    problem.q.segment<3>(at) = rate(k, free) + (rates.empty() ? Vector3::Zero() : rates[k]);
+    problem.friction.push_back(rubs ? blocks_[k].friction : 0.0);
+    begin.segment<3>(at) = along[k];
+    for (std::size_t l = 0; l < n; ++l) {
+      auto W = problem.W.block<3, 3>(at, static_cast<Eigen::Index>(3 * l));
+      for (const auto& [i, of] :
+           {std::pair{blocks_[k].a, &blocks_[k].of_a}, std::pair{blocks_[k].b, &blocks_[k].of_b}}) {
+        for (const auto& [j, to] : {std::pair{blocks_[l].a, &blocks_[l].to_a},
+                                    std::pair{blocks_[l].b, &blocks_[l].to_b}}) {
+          if (i == j) {
+            W += *of * *to;
+          }
+        }
+      }
+    }
+  }
+  const Eigen::VectorXd found = cone_newton(problem, begin, settled);
+  velocities = free;
+  for (std::size_t k = 0; k < n; ++k) {
+    along[k] = found.segment<3>(static_cast<Eigen::Index>(3 * k));
+    push_along(blocks_[k], along[k], velocities);
+  }
 }
 
 Vector3 ContactSweeps::rate(std::size_t touch, const std::vector<Vector6>& v) const {
