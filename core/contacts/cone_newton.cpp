@@ -98,6 +98,23 @@ class Projections {
     return J;
   }
 
+  /// What opens takes no impulse at all, and what has no friction none across.
+  void make_exact(VectorXd& p) const {
+    const VectorXd u = of_.W * p + of_.q;
+    for (std::size_t k = 0; k < felt_.size(); ++k) {
+      const Eigen::Index at = place(k);
+      const Vector3d pk = p.segment<3>(at);
+      const Vector3d uk = u.segment<3>(at);
+      const Does does = state(k, pk, uk, felt_[k] * pk - uk);
+      if (does == Does::opens || does == Does::holds_along) {
+        p[at] = 0.0;
+      }
+      if (does == Does::opens || of_.friction[k] == 0.0) {
+        p.segment<2>(at + 1).setZero();
+      }
+    }
+  }
+
  private:
   enum class Does { opens, holds_along, sticks, slides };
 
@@ -140,6 +157,7 @@ VectorXd cone_newton(const ConeProblem& problem, const VectorXd& begin, double s
       }
     }
   }
+  projections.make_exact(nearest);
   return nearest;
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace kairos {
@@ -44,8 +45,8 @@ class ContactSweeps {
   [[nodiscard]] Swept sweep(std::vector<Vector6> velocities, std::span<const Vector3> rates,
                             std::span<const Vector3> begin, double settled, bool rubs) const;
 
-  /// From here on this touch has no friction.
-  void make_smooth(std::size_t touch) { blocks_[touch].friction = 0.0; }
+  /// From here on this touch has no friction; whether it had some.
+  bool make_smooth(std::size_t touch) { return std::exchange(blocks_[touch].friction, 0.0) != 0.0; }
 
   /// Rows: normal and tangents of a touch.
   [[nodiscard]] const Eigen::Matrix3d& axes(std::size_t touch) const { return blocks_[touch].axes; }

@@ -63,8 +63,7 @@ bool let_part(std::span<const SweptTouch> touches, const ContactSweeps::Swept& s
     const bool pressed = touches[k].normal.dot(swept.impulse[k]) > 0.0;
     if (!pressed && !swept.impulse[k].isZero(0.0) &&
         (sweeps.rate(k, swept.velocities) + rates[k]).x() > least) {
-      sweeps.make_smooth(k);
-      any = true;
+      any = sweeps.make_smooth(k) || any;
     }
   }
   return any;

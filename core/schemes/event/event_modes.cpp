@@ -171,6 +171,7 @@ bool EventModes::settle_flat(Gathered found, Instant t, const Adopt& adopt,
     if (!completes(found, mode, options)) {
       return false;
     }
+    put_in_order(found, mode, t, options);
     commit(found, mode, t, adopt);
     for (std::size_t p = 0; p < until.size(); ++p) {
       run_.push_in_epoch(t + until[p], DueKind::mode_ends, found.pairs[p].first,

@@ -167,6 +167,11 @@ class EventModes {
                                  const SettleOptions& options);
   [[nodiscard]] bool settle_flat(Gathered found, Instant t, const Adopt& adopt,
                                  const SettleOptions& options);
+  [[nodiscard]] std::vector<double> better_gaps(const Gathered& found, const FlatMode& mode) const;
+  [[nodiscard]] std::optional<Gathered> at_gaps(const Gathered& found,
+                                                const std::vector<double>& gaps, Instant t,
+                                                SettleOptions options);
+  void put_in_order(Gathered& found, const FlatMode& mode, Instant t, SettleOptions options);
   [[nodiscard]] bool settle_turning(std::span<const BodyIndex> seeds, Instant t, const Adopt& adopt,
                                     const SettleOptions& options);
   [[nodiscard]] std::string add_touches(Gathered& found, Instant t, Turning& turning) const;
