@@ -429,8 +429,8 @@ std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point
   const Vector3 n_B = b.orientation.conjugate() * n;
   Touch touch;
   touch.normal = n;
-  const auto corner_a = ball_feature(shape_a, on_a, n_A);
-  const auto corner_b = ball_feature(shape_b, on_b, -n_B);
+  auto corner_a = ball_feature(shape_a, on_a, n_A);
+  auto corner_b = ball_feature(shape_b, on_b, -n_B);
   if (is_round(corner_a) && !std::holds_alternative<HalfSpace>(shape_b)) {
     const Vector3 middle = b.to_body(a.to_world(corner_a->at));
     const auto under = under_ball(shape_b, on_b, -n_B, manifold.face_of_b, middle);
@@ -465,6 +465,9 @@ std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point
       if (const auto edges = crossing(shape_a, a, on_a, shape_b, b, on_b, n)) {
         return edges;
       }
+      // Nearly parallel: the place at the rim is held, which is no corner and has no rim.
+      corner_a.reset();
+      corner_b.reset();
     }
     // Of two corners at one place the one that is on the face of the other: it may slide on.
     const bool has_a = corner_a && !(corner_b && past_a < past_b);

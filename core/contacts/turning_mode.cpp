@@ -390,6 +390,43 @@ std::optional<Parting> parting(const TurningState& state) {
   return found;
 }
 
+namespace {
+
+/// Moves the bodies as impulses along these rows would, were it velocities.
+void displace(const ContactSystem& rows, const Eigen::VectorXd& impulses, TurningState& state) {
+  std::vector<Twist> step(state.bodies.size());
+  rows.push(impulses, step);
+  for (std::size_t i = 0; i < state.bodies.size(); ++i) {
+    if (kairos::moves(state.bodies[i])) {
+      Pose& pose = state.states[i].pose;
+      pose.position += step[i].linear;
+      if (!step[i].angular.isZero(0.0)) {
+        pose.orientation = rotate(step[i].angular, pose.orientation).normalized();
+      }
+    }
+  }
+}
+
+}  // namespace
+
+bool put_clear(TurningState& state) {
+  ContactSystem all;
+  all.bodies = state.bodies;
+  all.joints = state.joints;
+  Eigen::VectorXd off(static_cast<Eigen::Index>(state.touches.size()));
+  for (std::size_t k = 0; k < state.touches.size(); ++k) {
+    const Touch& touch = state.touches[k];
+    const TouchNow now = look_at(touch, state.states[touch.a], state.states[touch.b]);
+    all.rows.push_back(row_of(state, touch, now, now.normal));
+    off[static_cast<Eigen::Index>(k)] = now.gap - touch.gap;
+  }
+  const Complementarity found = solve_complementarity(all.coupling(), off);
+  if (found.solved) {
+    displace(all, found.x, state);
+  }
+  return found.solved;
+}
+
 void put_at_gaps(TurningState& state, const std::vector<char>& moves) {
   ContactSystem held;
   held.bodies = state.bodies;
@@ -411,17 +448,7 @@ void put_at_gaps(TurningState& state, const std::vector<char>& moves) {
   decomposition.setThreshold(1e-11);
   decomposition.compute(held.coupling());
   const Eigen::Map<const Eigen::VectorXd> gaps(off.data(), static_cast<Eigen::Index>(off.size()));
-  std::vector<Twist> step(state.bodies.size());
-  held.push(-decomposition.solve(gaps), step);
-  for (std::size_t i = 0; i < state.bodies.size(); ++i) {
-    if (kairos::moves(state.bodies[i])) {
-      Pose& pose = state.states[i].pose;
-      pose.position += step[i].linear;
-      if (!step[i].angular.isZero(0.0)) {
-        pose.orientation = rotate(step[i].angular, pose.orientation).normalized();
-      }
-    }
-  }
+  displace(held, -decomposition.solve(gaps), state);
 }
 
 }  // namespace core

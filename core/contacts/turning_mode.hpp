@@ -56,5 +56,9 @@ struct Parting {
 /// `moves` holds are what they are to be; first order in what they are off by.
 void put_at_gaps(TurningState& state, const std::vector<char>& moves);
 
+/// The same, so that no gap is less than it is to be; false, and nothing is moved, where it is not
+/// known how.
+[[nodiscard]] bool put_clear(TurningState& state);
+
 }  // namespace core
 }  // namespace kairos

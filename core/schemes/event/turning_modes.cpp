@@ -207,10 +207,10 @@ void EventModes::find_forces(const Gathered& found, Turning& turning, Instant t)
 }
 
 /// Gathers what touches, with gaps that can be held. Where that brings one nearer to what passes
-/// by, this makes way, too.
+/// by, this makes way, too; and where that does not help, gaps may be larger than they need to be.
 bool EventModes::make_room(std::span<const BodyIndex> seeds, Instant t, SettleOptions options,
                            Gathered& found, Turning& turning) {
-  for (const bool near : {false, true}) {
+  for (const auto& [near, at_least] : {std::pair{false, false}, {true, false}, {true, true}}) {
     options.near = near;
     found = gather(seeds, t, options);
     turning = {};
@@ -222,7 +222,7 @@ bool EventModes::make_room(std::span<const BodyIndex> seeds, Instant t, SettleOp
       return false;
     }
     const std::vector<BodyState> before = found.states;
-    lift(found, turning, t);
+    lift(found, turning, t, at_least);
     if (has_room(before, found, t)) {
       return true;
     }
@@ -410,11 +410,11 @@ std::string EventModes::add_rims(const Gathered& found, Turning& turning) const 
   return {};
 }
 
-/// Gaps that are too small to be held are made larger; then touches are those alone that are at
-/// rest along their normals.
-void EventModes::lift(Gathered& found, Turning& turning, Instant t) {
+/// Gaps that are too small to be held are made larger, `at_least`: maybe others, too; then touches
+/// are those alone that are at rest along their normals.
+void EventModes::lift(Gathered& found, Turning& turning, Instant t, bool at_least) {
   TurningState& start = turning.group.start;
-  raise(found, turning, t);
+  raise(found, turning, t, at_least);
   std::erase_if(start.touches, [&](const Touch& touch) {
     const TouchNow now = look_at(touch, start.states[touch.a], start.states[touch.b]);
     return found.passes[touch.pair] != 0 ||
@@ -498,7 +498,7 @@ void EventModes::tell_jam(const Gathered& found, const Turning& turning, Instant
   }
 }
 
-void EventModes::raise(Gathered& found, Turning& turning, Instant t) {
+void EventModes::raise(Gathered& found, Turning& turning, Instant t, bool at_least) {
   TurningState& start = turning.group.start;
   const std::vector<char> all(start.touches.size(), 1);
   std::vector<double> missing(turning.group.pairs.size(), 0.0);
@@ -516,7 +516,9 @@ void EventModes::raise(Gathered& found, Turning& turning, Instant t) {
   for (Touch& touch : start.touches) {
     touch.gap += missing[touch.pair];
   }
-  put_at_gaps(start, all);
+  if (!at_least || !put_clear(start)) {
+    put_at_gaps(start, all);
+  }
   for (Touch& touch : start.touches) {
     touch.gap = look_at(touch, start.states[touch.a], start.states[touch.b]).gap;
   }
