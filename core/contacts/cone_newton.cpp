@@ -1,6 +1,6 @@
 #include "core/contacts/cone_newton.hpp"
 
-#include <Eigen/QR>
+#include "core/contacts/least_norm.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -145,7 +145,7 @@ VectorXd cone_newton(const ConeProblem& problem, const VectorXd& begin, double s
   for (VectorXd p : {begin, VectorXd(VectorXd::Zero(begin.size()))}) {
     for (int steps = 0, idle = 0; idle < most_idle && steps < most_steps && least > settled;
          ++steps, ++idle) {
-      p -= projections.change(p).completeOrthogonalDecomposition().solve(projections.off(p));
+      p -= least_norm(projections.change(p), projections.off(p));
       const double off = projections.off(p).lpNorm<Eigen::Infinity>();
       if (!std::isfinite(off)) {
         break;

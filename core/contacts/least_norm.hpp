@@ -8,7 +8,7 @@ namespace kairos {
 inline namespace core {
 
 /// Solves A x = b in the sense of least squares, with the x of least norm, for one A and any number
-/// of b: a complete orthogonal decomposition, which is compiled here alone. Columns and rows that
+/// of b: a complete orthogonal decomposition. Columns and rows that
 /// the others imply up to 1e-12 count as implied.
 class LeastNorm {
  public:
