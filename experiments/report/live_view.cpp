@@ -39,7 +39,7 @@ constexpr Live lives[] = {
     {"energy-drift", "bounce", "a ball rises higher and higher, and does not"},
     {"penetration", "bullet", "a ball flies through a wall, and does not"},
     {"bat", "bat", "the bat goes through the ball, and does not"},
-    {"spinning-box", "spinning-box", "a spinning box meets the floor"},
+    {"spinning-box", "spinning-box", "a spinning box meets a plate"},
 };
 
 const Live* live_of(const std::string& entry) {
@@ -95,7 +95,7 @@ std::string live_html(const ReportEntry& entry) {
   return fmt::format(
       "<details class=\"live\"><summary>See it move: {0}</summary>\n"
       "<p class=\"note\"><a href=\"{1}\" target=\"live-{2}\">Show it here</a>, or <a "
-      "href=\"{1}\">alone on a page</a> (1 to 3 MB; the only thing here that needs scripts). "
+      "href=\"{1}\">alone on a page</a> (up to some 3 MB; the only thing here that needs scripts). "
       "Left: from impact to impact. Right: the thesis’ stepping.</p>\n"
       "<iframe name=\"live-{2}\" title=\"{0}\"></iframe></details>\n",
       html(std::string(live->what)), path, html(entry.name));

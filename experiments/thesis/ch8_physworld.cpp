@@ -169,8 +169,9 @@ ThesisFigure physworld() {
       .title = "Chapter 8.1: vrphysicsapp in the flesh",
       .shows = "Nine frames of three balls, two walls, an anti-gravity pad and a conveyor.",
       .how =
-          "scenes/physworld.def, of which the thesis keeps the pad's five lines; all other "
-          "values were found by kairos physworld, such that the nine frames of {moments} moments "
+          "scenes/physworld.def, of which the thesis keeps the pad's five lines; places, "
+          "velocities and sizes were found by kairos physworld, such that the nine frames of "
+          "{moments} moments "
           "that the captions tell come in order under both schemes. Left the original scheme, "
           "right "
           "event-driven with the thesis' impact law; each frame just after the collision that its "

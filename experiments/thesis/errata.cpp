@@ -70,7 +70,8 @@ std::span<const Erratum> errata() {
       {"4", "9.1.1.1", "the interval between frames is too large: balls penetrate",
        "and miss: a fraction max(0, 1 - (w+2r)/(v h)) goes through",
        "prediction 4: the tunnelled fraction is max(0, 1 - (w+2r)/(v h))", tunnelling},
-      {"5", "4.3", "gravity pulls with 9.8", "as a force, so that a ball of mass m falls with G/m",
+      {"5", "5.4.1", "gravity pulls with 9.8",
+       "as a force, so that a ball of mass m falls with G/m",
        "prediction 5: gravity is a force, so a ball of mass m falls with G/m", gravity_as_a_force},
       {"6", "6.3.3", "the conveyor reflects a ball and pushes it sideways",
        "not one lighter than its belt of 10 kg: each frame inside, the exchange turns it outwards "

@@ -56,7 +56,7 @@ std::span<const Undecided> undecided() {
        "one wall at 2 m/s: fig. 15 taken literally lets {literal_2} through, the swept box none; "
        "two walls at 40 m/s: the swept box lets {corridor} out within a second, fig. 15 none. "
        "Neither is better everywhere"},
-      {"8.3.3", "physical correctness was accomplished: objects behave as expected",
+      {"8.4", "physical correctness was accomplished: objects behave as expected",
        "it is about pictures and frame times of 1999, which are lost",
        "the nine frames of 8.1 can be told by the same algorithms, on values that a search found"},
       {"3.4", "a bounding sphere has, on average, a larger volume than a bounding box",

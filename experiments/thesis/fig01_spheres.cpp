@@ -57,25 +57,26 @@ void measure(FigureData& data) {
 }  // namespace
 
 ThesisFigure two_spheres() {
-  return {
-      .name = "fig01",
-      .chapter = "2",
-      .title = "Figure 1: two spheres",
-      .shows =
-          "Two spheres intersect if the distance of their centres is less than the sum of "
-          "their radii (2.1.1).",
-      .how =
-          "Three pairs are put to the library; it answers with yes or no, the signed gap, "
-          "the normal, and the middle of the contact. Then the distance is moved across the "
-          "sum of the radii one unit in the last place at a time.",
-      .caption =
-          "Three pairs of spheres with the library's answers: the gap along the line of "
-          "centres, and the middle of the contact (cross).",
-      .finding =
-          "The answer changes where the thesis says: the largest distance that still counts as an "
-          "overlap is the sum of the radii plus {last} ulp (of {ulp}).",
-      .script = "thesis.fig01",
-      .measure = measure};
+  return {.name = "fig01",
+          .chapter = "2",
+          .title = "Figure 1: two spheres",
+          .shows =
+              "Two spheres intersect if the distance of their centres is less than the sum of "
+              "their radii (2.1.1).",
+          .how =
+              "Three pairs are put to the library; it answers with yes or no, the signed gap, "
+              "the normal, and the middle of the contact. Then the distance is moved across the "
+              "sum of the radii one unit in the last place at a time.",
+          .caption =
+              "Three pairs of spheres with the library's answers: the gap along the line of "
+              "centres, and the middle of the contact (cross).",
+          .finding =
+              "The answer changes where the thesis says, at the sum of the radii, which itself "
+              "counts as "
+              "touching as in 3.4 (2.1.1 has it apart): the largest distance that counts as an "
+              "overlap is the sum of the radii plus {last} ulp (of {ulp}).",
+          .script = "thesis.fig01",
+          .measure = measure};
 }
 
 }  // namespace kairos::experiments::thesis

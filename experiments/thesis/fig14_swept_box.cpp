@@ -58,27 +58,28 @@ void measure(FigureData& data) {
 }  // namespace
 
 ThesisFigure swept_box_of_geometric() {
-  return {.name = "fig14",
-          .chapter = "9",
-          .title = "Figure 14: the geometric approach",
-          .shows =
-              "A bounding box is constructed around the ball in positions 1 and 3; if it meets "
-              "something, where the collision took place is resolved within (9.1.1.2.1).",
-          .how =
-              "The box that the scheme `geometric` builds for the frame of figure 13, from the "
-              "library: aligned with the displacement (solid), and the variant with the body's own "
-              "axes (dashed).",
-          .caption =
-              "Swept boxes around positions 1 and 3: {volume} along the displacement, "
-              "{own_volume} with the body's own axes.",
-          .finding =
-              "The swept box {answer} the wall, and the contact is located at {fraction} of "
-              "the frame (position 2). The thesis expects the box to be hard to build; "
-              "aligned with the displacement it is a dozen lines, and the box with the body's "
-              "own axes is {ratio} times as large here. What comes after that contact in the same "
-              "frame is not looked at: statement 14 of the errata.",
-          .script = "thesis.fig14",
-          .measure = measure};
+  return {
+      .name = "fig14",
+      .chapter = "9",
+      .title = "Figure 14: the geometric approach",
+      .shows =
+          "A bounding box is constructed around the ball in positions 1 and 3; if it meets "
+          "something, where the collision took place is resolved within (9.1.1.2.1).",
+      .how =
+          "The box that the scheme `geometric` builds for the frame of figure 13, from the "
+          "library: aligned with the displacement (solid), and the variant with the body's own "
+          "axes (dashed).",
+      .caption =
+          "Swept boxes around positions 1 and 3: {volume} along the displacement, "
+          "{own_volume} with the body's own axes.",
+      .finding =
+          "The swept box {answer} the wall, and the contact is located at {fraction} of "
+          "the frame (position 2). The thesis expects the box to be hard to build; "
+          "aligned with the displacement it takes two short functions, and the box with the body's "
+          "own axes is {ratio} times as large here. What comes after that contact in the same "
+          "frame is not looked at: statement 14 of the errata.",
+      .script = "thesis.fig14",
+      .measure = measure};
 }
 
 }  // namespace kairos::experiments::thesis

@@ -268,7 +268,8 @@ ThesisFigure gaining_energy() {
               "forces.” Told, not drawn.",
           .how =
               "The scene `bounce` for {duration} at 60 frames a second, with every scheme and "
-              "every integrator ({combinations} combinations; tolerance {tolerance} where steps "
+              "every integrator that may be combined ({combinations} combinations; tolerance "
+              "{tolerance} where steps "
               "are controlled). Each of the two causes is then "
               "measured by itself: the change of energy in each of the {impacts} impacts, and "
               "the same arithmetic, operation by operation, in long double (in double it ends in "
@@ -283,7 +284,8 @@ ThesisFigure gaining_energy() {
               "velocity. The ledger books {truncation} as truncation of the integrator, and "
               "no ledger of any combination leaves more than {unexplained} unexplained. Symplectic "
               "Euler loses as much, in a way of its own: a reflected ball that is still inside is "
-              "turned back in, again and again, and sinks through the floor, to {sunk}.",
+              "turned back in, again and again, and sinks through the floor, to {sunk}; from event "
+              "to event it comes to rest on it.",
           .script = "thesis.sec912",
           .measure = measure};
 }
