@@ -462,7 +462,7 @@ std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point
     // A corner that has gone over the rim of the face is on it no more: its edge is, at the rim.
     const double size = radius_of(shape_a) + radius_of(shape_b);
     if (std::min(past_a, past_b) > gone_over * size) {
-      if (const auto edges = crossing(shape_a, a, on_a, shape_b, b, on_b, n)) {
+      if (auto edges = crossing(shape_a, a, on_a, shape_b, b, on_b, n)) {
         return edges;
       }
       // Nearly parallel: the place at the rim is held, which is no corner and has no rim.

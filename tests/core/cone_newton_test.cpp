@@ -42,7 +42,7 @@ TEST_CASE("Newton's method on cones finds impulses that satisfy Coulomb's law, w
   int found = 0;
   constexpr int trials = 2'000;
   for (int trial = 0; trial < trials; ++trial) {
-    const int touches = 1 + trial % 6;
+    const Eigen::Index touches = 1 + trial % 6;
     const Eigen::Index rows = 3 * touches;
     // Fewer bodies than touches in every other problem: impulses are redundant.
     const Eigen::Index freedom = trial % 2 == 0 ? rows : 6 * (1 + touches / 3);
@@ -57,7 +57,7 @@ TEST_CASE("Newton's method on cones finds impulses that satisfy Coulomb's law, w
     }
     problem.W = J * J.transpose();
     problem.q = J * motion;
-    for (int k = 0; k < touches; ++k) {
+    for (Eigen::Index k = 0; k < touches; ++k) {
       const double mu = random.uniform(0.0, 1.0);
       problem.friction.push_back(k % 5 == 4 ? infinity : k % 5 == 3 ? 0.0 : mu);
     }
@@ -67,7 +67,7 @@ TEST_CASE("Newton's method on cones finds impulses that satisfy Coulomb's law, w
     // What is off in a touch is measured in velocities, and felt by compliances up to 30.
     const double tolerance = 1e-10 * (1.0 + p.norm());
     bool keeps = true;
-    for (int k = 0; k < touches; ++k) {
+    for (Eigen::Index k = 0; k < touches; ++k) {
       const Eigen::Vector3d pk = p.segment<3>(3 * k), uk = u.segment<3>(3 * k);
       const double mu = problem.friction[static_cast<std::size_t>(k)];
       const double pushed = pk.tail<2>().norm(), slip = uk.tail<2>().norm();
