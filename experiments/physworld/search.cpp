@@ -119,7 +119,8 @@ std::string def_of(const World& w) {
   const double wall_x = w.floor_x + w.floor_width + w.wall_gap;
   std::string text =
       "# vrphysicsapp (ch. 8.1): three balls, two walls, an anti-gravity pad and a conveyor.\n"
-      "# The first five lines are the thesis' own (9.2.2); all other values were found by\n"
+      "# The first five lines are the thesis' own (9.2.2); places, velocities and sizes were found "
+      "by\n"
       "# `kairos physworld`, such that the nine frames come in the order of their captions under\n"
       "# the original scheme and event-driven. G is a force: a ball of 20 kg falls with 9.8.\n"
       "Object1-Name:object_files/agpad\nObject1-Pos:12.0 -25.0 20.0\nObject1-Normal:0.0, 1.0, 0.0\n"

@@ -324,9 +324,8 @@ Report write_report(const std::string& folder) {
   const std::string size = entries.front().entry("size") == "full" ? "Full" : "Quick";
   const std::string footer = fmt::format(
       "{} size. {}. The numbers of the thesis' figures and of the paper are filled in from the "
-      "linked "
-      "tables, those of the experiments' findings were read from them; the same commands on "
-      "the same machine and toolchain give the same bytes (timings, and the date in rendered "
+      "linked tables, those of the experiments' findings were read from them; the same commands "
+      "on the same machine and toolchain give the same bytes (timings, and the date in rendered "
       "pictures, apart).",
       size, versions_html(entries.front()));
   write_site(folder, pages.all(), {style_sheet(), footer});

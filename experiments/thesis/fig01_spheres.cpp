@@ -72,8 +72,8 @@ ThesisFigure two_spheres() {
               "centres, and the middle of the contact (cross).",
           .finding =
               "The answer changes where the thesis says, at the sum of the radii, which itself "
-              "counts as "
-              "touching as in 3.4 (2.1.1 has it apart): the largest distance that counts as an "
+              "counts as touching as in 3.4 (2.1.1 has it apart): the largest distance that counts "
+              "as an "
               "overlap is the sum of the radii plus {last} ulp (of {ulp}).",
           .script = "thesis.fig01",
           .measure = measure};

@@ -112,8 +112,7 @@ ThesisFigure bat_in_bounds() {
       .shows =
           "“Simplify the problem even further by bounding each object with only one "
           "bounding box ... to increase speed at the cost of some accuracy” (3.1); a volume that "
-          "is "
-          "larger than its object detects collisions “earlier than they should” (3.4). "
+          "is larger than its object detects collisions “earlier than they should” (3.4). "
           "Argued by areas, not measured.",
       .how =
           "{rallies} recordings of rallies are played from event to event by one bat, an .off "

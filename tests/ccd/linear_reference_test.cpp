@@ -74,7 +74,7 @@ std::uint64_t compare_families(std::uint64_t count, const Change& change) {
 TEST_CASE("linear: no false positive, no false negative, and the bracket of the reference",
           "[ccd][linear][reference][slow]") {
   const std::uint64_t count =
-      from_environment("KAIROS_LINEAR_QUERIES", 410);  // of 24 that are not slow: 1e4
+      from_environment("KAIROS_LINEAR_QUERIES", 410);  // of 28 that are not slow: 1e4
   const std::uint64_t hits = compare_families(count, [](LinearQuery&, std::uint64_t) {});
   CHECK(hits > count);  // otherwise the families show nothing
   CHECK(hits < 27 * count);

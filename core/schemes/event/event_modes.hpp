@@ -198,7 +198,7 @@ class EventModes {
   void still_hold(ContactGroup& group, GroupImpact& impact) const;
   [[nodiscard]] bool make_room(std::span<const BodyIndex> seeds, Instant t, SettleOptions options,
                                Gathered& found, Turning& turning);
-  void lift(Gathered& found, Turning& turning, Instant t, bool at_least = false);
+  void lift(Gathered& found, Turning& turning, Instant t, bool at_least);
   void raise(Gathered& found, Turning& turning, Instant t, bool at_least);
   [[nodiscard]] static bool let_hop(Turning& turning, double roundoff);
   void let_jam(const Gathered& found, Turning& turning, Instant t, double still) const;

@@ -117,10 +117,12 @@ void EventModes::put_in_order(Gathered& found, const FlatMode& mode, Instant t,
     if (!run_.model.is_free(found.bodies[k])) {
       continue;
     }
-    Pose& pose = found.states[k].pose;
-    const Pose& is = better->states[better->place(found.bodies[k])].pose;
-    run_.account.moved(found.bodies[k], is.position - pose.position);
-    pose = is;
+    const BodyIndex i = found.bodies[k];
+    BodyState& state = found.states[k];
+    const BodyState before = state;
+    state.pose = better->states[better->place(i)].pose;
+    run_.account.moved(i, state.pose.position - before.pose.position);
+    run_.ledger.add(EnergyLine::position_correction, run_.account.gained(i, before, state));
   }
 }
 
