@@ -40,9 +40,23 @@ constexpr double ulps_of_piece = 64.0;
 /// One turn, and the rounding of both ends.
 constexpr double whole_turn = 2.0 * std::numbers::pi * (1.0 + 1e-12);
 
+/// Which gap is within the tolerance: that asked for, or the default of the window so far. (What a
+/// fast body reaches by the end of a long window makes no gap at its start a touch.)
+struct Tolerance {
+  double most = 0.0;               ///< of the whole window, m, > 0
+  const MovingShape* a = nullptr;  ///< the two bodies; none: `most` is asked for
+  const MovingShape* b = nullptr;
+  Instant start{};
+
+  [[nodiscard]] bool holds(const Look& at) const {
+    return at.gap() <= most &&
+           (a == nullptr || at.gap() <= default_tolerance(*a, *b, {start, at.t()}));
+  }
+};
+
 /// Options of a query beside its two motions.
 struct Effort {
-  double tolerance = 0.0;    ///< m, > 0
+  Tolerance tolerance;
   bool prove = true;         ///< an impact is a proven overlap, not a gap within the tolerance
   bool whole = true;         ///< two whole bodies; otherwise parts of bodies
   int most_evaluations = 0;  ///< of parts
@@ -114,7 +128,7 @@ Ending advance_from(PairLooks& pair, BoundsAhead& bounds, const Effort& effort, 
   int near = 0;  // looks within the tolerance, one after the other
   while (true) {
     const bool spent = pair.count() > budget;
-    near = at.gap() <= effort.tolerance ? near + 1 : 0;
+    near = effort.tolerance.holds(at) ? near + 1 : 0;
     if (near > 0 && ((spent && effort.whole) || worth_resolving(effort, at, near))) {
       if (const auto ending = resolve(pair, effort, at, spent && effort.whole)) {
         return *ending;
@@ -173,8 +187,8 @@ TimeOfImpact run(PairKind kind, const PairMotion& motion, const MovingShape& a,
       return answer;
     }
   }
-  if (!(effort.tolerance > 0.0)) {
-    effort.tolerance = default_tolerance(a, b, window);
+  if (!(effort.tolerance.most > 0.0)) {
+    effort.tolerance = {default_tolerance(a, b, window), &a, &b, window.start};
   }
   const Ending ending = advance(pair, effort, clear);
   assert(ending.t_hi >= ending.at.t() && ending.t_hi <= pair.duration());
@@ -227,7 +241,7 @@ TimeOfImpact advance_to_impact(const MovingShape& a, const MovingShape& b, const
   }
   const PairMotion motion(a, b, window, Positions::heights);
   return run(pair_kind(a.shape, b.shape), motion, a, b, window,
-             {.tolerance = options.tolerance, .prove = options.prove}, 0.0);
+             {.tolerance = {.most = options.tolerance}, .prove = options.prove}, 0.0);
 }
 
 TimeOfImpact advance_parts(const MovingShape& a, const ConvexCore& part_of_a, const MovingShape& b,
@@ -237,7 +251,7 @@ TimeOfImpact advance_parts(const MovingShape& a, const ConvexCore& part_of_a, co
                                 ? PairMotion({part_of_a, a.motion}, {*part_of_b, b.motion}, window)
                                 : PairMotion({part_of_a, a.motion}, b, window, Positions::heights);
   return run(part_of_b != nullptr ? PairKind::cores : PairKind::core_plane, motion, a, b, window,
-             {.tolerance = query.tolerance,
+             {.tolerance = {.most = query.tolerance},
               .prove = query.prove,
               .whole = false,
               .most_evaluations = query.most_evaluations},

@@ -158,12 +158,13 @@ bool overlap_by_faces(const Operands& o, double faces) {
 KAIROS_INLINE bool apart_beyond(const RelativeBoxes& boxes, const Operands& o, double face) {
   Bits apart{};
   Bits inside = ~Bits{};
-  Lanes faces[2];
+  Lanes faces[2], edges[3];
   for_all_rows(o, [&](int row, const Lanes& value) {
     apart |= value > (row < 2 ? face : o.error);
     if (row < 2) {
       faces[row] = value;
     } else {
+      edges[row - 2] = value;
       inside &= value < -o.error;
     }
   });
@@ -173,8 +174,7 @@ KAIROS_INLINE bool apart_beyond(const RelativeBoxes& boxes, const Operands& o, d
   if (!any(~inside)) {
     return false;
   }
-  // A separation that nearly parallel edges hide in their error is at most 4 sine * size above that
-  // of the faces.
+  // A separation that edges hide in their error is at most 4 sine * size above that of the faces.
   const double greatest =
       std::max({faces[0][0], faces[0][1], faces[0][2], faces[1][0], faces[1][1], faces[1][2]});
   const double size = o.error / (24.0 * unit_roundoff);
@@ -183,8 +183,7 @@ KAIROS_INLINE bool apart_beyond(const RelativeBoxes& boxes, const Operands& o, d
     for (int i = 0; i < 3; ++i) {
       const double x = o.axis[j][(i + 1) % 3];
       const double y = o.axis[j][(i + 2) % 3];
-      const double square = x * x + y * y;
-      if (square >= needed * needed && square < small_sine * small_sine &&
+      if (edges[j][i] >= -o.error && x * x + y * y >= needed * needed &&
           unit_edge_separation(boxes, 6 + 3 * i + j).gap() > o.error) {
         return true;
       }

@@ -302,12 +302,14 @@ void PairMotion::add_rotation_errors() {
       const double rate = motion.rotation_rate.norm();
       rotation_error_ += 40.0 * u;
       (second ? rate_b_ : rate_a_) = rate;
+      double& angle = second ? angle_error_b_ : angle_error_a_;
+      double& growth = second ? angle_error_rate_b_ : angle_error_rate_a_;
       // The angle is a sum of two doubles, off by some u^2 of itself.
-      rotation_error_ += 32.0 * u * u * rate * std::abs(s);
-      rotation_error_rate_ += 32.0 * u * u * rate;
+      angle += 32.0 * u * u * rate * std::abs(s);
+      growth += 32.0 * u * u * rate;
       if (s != 0.0) {  // s + t is rounded
-        rotation_error_ += 2.0 * u * rate * std::abs(s);
-        rotation_error_rate_ += 2.0 * u * rate;
+        angle += 2.0 * u * rate * std::abs(s);
+        growth += 2.0 * u * rate;
       }
     } else {
       simple_ = false;
@@ -368,18 +370,24 @@ void PairMotion::evaluate(double t, Kinematics& k) const {
   }
   const double distance = k.d.lpNorm<1>();
   const double extents = extent_a_ + extent_b_;
-  double rotation = rotation_error_ + rotation_error_rate_ * t;
+  double still = rotation_error_;
+  const double angle_a = angle_error_a_ + angle_error_rate_a_ * t;
+  const double angle_b = angle_error_b_ + angle_error_rate_b_ * t;
   if (!constant_rates_) {
     for (const bool second : {false, true}) {
       const Motion& motion = second ? *motion_b_ : *motion_a_;
       if ((second ? turns_b_ : turns_a_) && motion.rotation == RotationKind::polynomial) {
-        rotation += polynomial_rotation_error(motion, (second ? s_b_ : s_a_) + t);
+        still += polynomial_rotation_error(motion, (second ? s_b_ : s_a_) + t);
       }
     }
   }
+  const double rotation = still + angle_a + angle_b;
   const double turning = k.w_a.lpNorm<1>() + k.w_b.lpNorm<1>();
   const double products = 2.0 * (rotation + 16.0 * u);
-  k.error += rotation * distance + (rotation + 16.0 * u) * extents;
+  // A body turned by a wrong angle has moved by that times its own extent, whatever direction
+  // separates it from the other; a half-space has no extent (eq. 11).
+  k.error += still * distance + (still + 16.0 * u) * extents + angle_a * extent_a_ +
+             angle_b * (plane_b_ ? distance + extents : extent_b_);
   k.rate_error += 2.0 * rotation * k.v.lpNorm<1>() + products * turning * (distance + extents);
   k.second_error += 2.0 * rotation * k.c.lpNorm<1>() +
                     products * turning * (k.v.lpNorm<1>() + turning * (distance + extents));

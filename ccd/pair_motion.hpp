@@ -146,8 +146,10 @@ class PairMotion {
   Polynomial<3> d_;
   Polynomial<3> curvature_;  ///< d'' / 2, degree > 2 only
   std::array<double, Polynomial<3>::max_degree + 1> position_error_{};  ///< coefficients in t
-  double rotation_error_ = 0.0;       ///< of the entries of both rotation matrices
-  double rotation_error_rate_ = 0.0;  ///< its growth with time, 1/s
+  double rotation_error_ = 0.0;  ///< of the entries of both rotation matrices
+  /// What an angle of a (b) is off by at the start, and its growth with time, 1/s: beside that.
+  double angle_error_a_ = 0.0, angle_error_rate_a_ = 0.0;
+  double angle_error_b_ = 0.0, angle_error_rate_b_ = 0.0;
 };
 
 }  // namespace kairos::ccd

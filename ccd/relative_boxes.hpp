@@ -67,7 +67,7 @@ struct AxisSeparation {
 [[nodiscard]] Vector3 axis_normal(const RelativeBoxes& boxes, const AxisSeparation& axis);
 
 /// Do two boxes overlap (touching included)? Nothing is added to |R|; an edge pair separates only
-/// beyond the rounding error, of nearly parallel edges that along the unit direction.
+/// beyond the rounding error, asked along the unit direction where the sine hides it.
 [[nodiscard]] bool boxes_overlap(const RelativeBoxes& boxes);
 /// Are they apart by more than the rounding error of any separation?
 [[nodiscard]] bool boxes_apart(const RelativeBoxes& boxes);
