@@ -204,7 +204,7 @@ std::optional<Ending> search_contact(PairLooks& pair, const Look& here, bool per
   double t = before;
   for (int attempt = 0; attempt < (persistent ? all_doublings : few_doublings); ++attempt) {
     ahead = std::min(ahead, remaining);
-    t = here.t() + ahead;
+    t = std::min(here.t() + ahead, pair.duration());  // the sum is rounded
     const Look there = pair.look(t);
     if (pair.overlap_proven(there)) {
       return Ending{ToiStatus::impact, here, shallow_overlap(pair, before, there, enough)};
