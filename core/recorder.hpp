@@ -45,6 +45,8 @@ class Recorder {
   virtual void motion(BodyIndex /*body*/, const Motion& /*motion*/) {}
   /// Something happened between two bodies.
   virtual void event(const Event& /*event*/) {}
+  /// Work goes on at this time, where much of it lies between two frames or events.
+  virtual void goes_on(Instant /*t*/) {}
   /// A stage of the flow of events; `fraction` of the frame done (fig. 15).
   virtual void stage(Stage /*stage*/, double /*fraction*/) {}
   /// Writes what it has gathered so far to a checkpoint, or reads it back (after `begin`). Returns

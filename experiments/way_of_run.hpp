@@ -13,6 +13,7 @@ class WayOfRun : public Recorder {
 
   void frame(const Frame& frame) override { bar_.reach_within(frame.time.seconds / end_); }
   void event(const Event& event) override { bar_.reach_within(event.time.seconds / end_); }
+  void goes_on(Instant t) override { bar_.reach_within(t.seconds / end_); }
 
  private:
   ProgressBar& bar_;

@@ -34,6 +34,7 @@ class RunGuard : public Recorder {
   void frame(const Frame& frame) override;
   void motion(BodyIndex body, const Motion& motion) override { inner_.motion(body, motion); }
   void event(const Event& event) override;
+  void goes_on(Instant t) override { inner_.goes_on(t); }
   void stage(Stage stage, double fraction) override { inner_.stage(stage, fraction); }
   bool persist(Archive& archive) override;
 

@@ -21,6 +21,7 @@ class RunProgress : public Recorder {
   void begin(const Model& model) override;
   void frame(const Frame& frame) override;
   void event(const Event& event) override;
+  void goes_on(Instant t) override { reach(t); }
   bool persist(Archive& /*archive*/) override { return true; }
 
  private:

@@ -38,6 +38,11 @@ class Broadcast : public Recorder {
       listener->event(event);
     }
   }
+  void goes_on(Instant t) override {
+    for (Recorder* listener : listeners_) {
+      listener->goes_on(t);
+    }
+  }
   void stage(Stage stage, double fraction) override {
     for (Recorder* listener : listeners_) {
       listener->stage(stage, fraction);

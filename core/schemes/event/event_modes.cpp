@@ -138,7 +138,7 @@ bool EventModes::settle_once(std::span<const BodyIndex> seeds, Instant t, const 
 bool EventModes::settle_flat(Gathered found, Instant t, const Adopt& adopt,
                              const SettleOptions& options) {
   while (why_not_.empty()) {
-    const FlatMode mode = contact_mode(found.group, {options.unloaded, options.unite});
+    FlatMode mode = contact_mode(found.group, {options.unloaded, options.unite});
     why_not_ = mode.refusal;
     if (mode.curved) {
       return settle_curved(found, t, adopt);

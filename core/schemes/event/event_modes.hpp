@@ -171,7 +171,8 @@ class EventModes {
   [[nodiscard]] std::optional<Gathered> at_gaps(const Gathered& found,
                                                 const std::vector<double>& gaps, Instant t,
                                                 SettleOptions options);
-  void put_in_order(Gathered& found, const FlatMode& mode, Instant t, SettleOptions options);
+  [[nodiscard]] bool touches_again(Gathered& found) const;
+  void put_in_order(Gathered& found, FlatMode& mode, Instant t, SettleOptions options);
   [[nodiscard]] bool settle_turning(std::span<const BodyIndex> seeds, Instant t, const Adopt& adopt,
                                     const SettleOptions& options);
   [[nodiscard]] std::string add_touches(Gathered& found, Instant t, Turning& turning) const;

@@ -99,10 +99,27 @@ std::optional<EventModes::Gathered> EventModes::at_gaps(const Gathered& found,
   return has_room(before, all, t) ? std::optional(std::move(all)) : std::nullopt;
 }
 
-/// Moves bodies so that faces are parallel and nothing is inside of another. What that does to the
-/// energy is `position_correction`.
-void EventModes::put_in_order(Gathered& found, const FlatMode& mode, Instant t,
-                              SettleOptions options) {
+/// What touches where at other poses: bodies and patches of a group again. Whether all still do.
+bool EventModes::touches_again(Gathered& found) const {
+  for (std::size_t k = 0; k < found.bodies.size(); ++k) {
+    found.group.bodies[k] = group_body(run_.model.inertia(found.bodies[k]), found.states[k].pose);
+  }
+  bool all = true;
+  for (std::size_t p = 0; p < found.pairs.size(); ++p) {
+    const auto& [a, b] = found.pairs[p];
+    GroupPatch& patch = found.group.patches[p];
+    patch.manifold =
+        run_.detector.manifold(run_.model.shape(a), found.states[patch.a].pose, run_.model.shape(b),
+                               found.states[patch.b].pose, predictor_.touching_gap(a, b));
+    all = all && patch.manifold.size > 0;
+  }
+  return all;
+}
+
+/// Moves bodies so that faces are parallel and nothing is inside of another, and finds the mode
+/// that goes on along these faces. What that does to the energy is `position_correction`. Nothing
+/// changes where another mode would.
+void EventModes::put_in_order(Gathered& found, FlatMode& mode, Instant t, SettleOptions options) {
   const std::vector<double> gaps = better_gaps(found, mode);
   if (std::all_of(gaps.begin(), gaps.end(), [](double gap) { return std::isnan(gap); })) {
     return;
@@ -113,17 +130,32 @@ void EventModes::put_in_order(Gathered& found, const FlatMode& mode, Instant t,
     options.near = true;
     better = at_gaps(found, gaps, t, options);
   }
-  for (std::size_t k = 0; better && k < found.bodies.size(); ++k) {
-    if (!run_.model.is_free(found.bodies[k])) {
-      continue;
-    }
-    const BodyIndex i = found.bodies[k];
-    BodyState& state = found.states[k];
-    const BodyState before = state;
-    state.pose = better->states[better->place(i)].pose;
-    run_.account.moved(i, state.pose.position - before.pose.position);
-    run_.ledger.add(EnergyLine::position_correction, run_.account.gained(i, before, state));
+  if (!better) {
+    return;
   }
+  Gathered straight = found;
+  for (std::size_t k = 0; k < found.bodies.size(); ++k) {
+    if (run_.model.is_free(found.bodies[k])) {
+      straight.states[k].pose = better->states[better->place(found.bodies[k])].pose;
+    }
+  }
+  if (!touches_again(straight)) {
+    return;
+  }
+  FlatMode along = contact_mode(straight.group, {options.unloaded, options.unite});
+  if (!along.refusal.empty() || along.curved || along.kept != mode.kept) {
+    return;
+  }
+  for (std::size_t k = 0; k < found.bodies.size(); ++k) {
+    const BodyIndex i = found.bodies[k];
+    if (run_.model.is_free(i)) {
+      const BodyState& is = straight.states[k];
+      run_.account.moved(i, is.pose.position - found.states[k].pose.position);
+      run_.ledger.add(EnergyLine::position_correction, run_.account.gained(i, found.states[k], is));
+    }
+  }
+  found = std::move(straight);
+  mode = std::move(along);
 }
 
 }  // namespace core

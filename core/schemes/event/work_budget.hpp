@@ -35,6 +35,8 @@ class WorkBudget {
   /// Counts an event; tells which bound it exceeds.
   [[nodiscard]] Spent spend(const DueEvent& event);
 
+  /// Of the kind that was counted last, in this frame.
+  [[nodiscard]] std::int64_t in_frame() const { return counts_[last_].in_frame; }
   [[nodiscard]] std::int64_t most_in_frame() const { return most_in_frame_; }
   [[nodiscard]] std::int64_t most_at_once() const { return most_at_once_; }
 
