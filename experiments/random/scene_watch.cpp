@@ -183,6 +183,8 @@ double SceneWatch::momentum(const Event& event) const {
 /// and each is known to some epsilon of the greatest; what one does to the velocity of the contact
 /// is 1/m + r^2/I of it. And faces in touch are apart by what their gaps are, thus tilted against
 /// each other: no velocity returns all their points as restitution has it, by tilt times speed.
+/// What is struck at once is solved for at once, to some epsilon of the fastest, which may be one
+/// that slides past.
 double SceneWatch::handed_on(const Event& event) const {
   if (at_once_.size() < 2) {
     return 0.0;
@@ -190,7 +192,10 @@ double SceneWatch::handed_on(const Event& event) const {
   double greatest = 0.0;
   double tilt = 0.0;
   double speed = 0.0;
+  double fastest = 0.0;
   for (const Event& other : at_once_) {
+    fastest = std::max({fastest, other.before_a.twist.linear.norm(),  //
+                        other.before_b.twist.linear.norm()});
     greatest = std::max(greatest, momentum(other));
     const double extent = std::min(smallest_extent(model_->shape(other.a)),  //
                                    smallest_extent(model_->shape(other.b)));
@@ -208,7 +213,7 @@ double SceneWatch::handed_on(const Event& event) const {
     response += 1.0 / inertia.mass;
     response += inertia.rotates ? arm * arm / inertia.principal.minCoeff() : 0.0;
   }
-  return 64.0 * epsilon * greatest * response + tilt * speed;
+  return 64.0 * epsilon * (greatest * response + fastest) + tilt * speed;
 }
 
 void SceneWatch::check_overlap(std::span<const BodyState> bodies, Instant t) const {

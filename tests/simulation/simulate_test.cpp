@@ -10,9 +10,11 @@
 #include "tests/catch.hpp"
 #include "tests/simulation/scenes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 using namespace kairos;
 
@@ -31,6 +33,21 @@ std::string complaint(const RunChoice& choice, const Scene& scene = drop()) {
   }
   return {};
 }
+
+/// When it was told that work goes on, and how many frames it saw before.
+class Impatient : public Recorder {
+ public:
+  void frame(const Frame& /*frame*/) override { ++frames_; }
+  void goes_on(Instant t) override {
+    told.push_back(t.seconds);
+    before_second_frame += frames_ < 2 ? 1 : 0;
+  }
+  std::vector<double> told;
+  int before_second_frame = 0;
+
+ private:
+  int frames_ = 0;
+};
 
 bool mentions(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
@@ -223,4 +240,22 @@ TEST_CASE("metrics are what the drawn frames show", "[metrics]") {
   CHECK(found.max_energy_error == 0.5);
   CHECK(found.final_energy_error == 0.25);
   CHECK(found.energy_scale == 5.0);
+}
+
+TEST_CASE("a frame that takes long says now and then how far it is", "[simulation]") {
+  Scene scene = drop();
+  scene.bodies[1].initial.twist.linear = Vector3(1.0, 0.0, 0.0);
+  const Model model(scene);
+  Impatient recorder;
+  RunChoice choice;
+  choice.method = {"event-driven", "rk4", "certified", "newton"};
+  choice.frames = FixedFrames{0.5};
+  choice.step = 1e-5;
+  choice.duration = 0.75;
+  CHECK(simulate(model, choice, recorder).status == RunStatus::completed);
+  // 50,000 steps of a frame are told every 1024.
+  CHECK(recorder.before_second_frame == 48);
+  CHECK(std::is_sorted(recorder.told.begin(), recorder.told.end()));
+  CHECK(recorder.told.front() > 0.0);
+  CHECK(recorder.told.back() > 0.74);
 }
