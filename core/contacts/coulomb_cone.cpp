@@ -19,6 +19,9 @@ using Vector2 = Eigen::Vector2d;
 constexpr double locked = 1e-12;
 /// What joints block to 1e-12 of what it would be moves by the root of that.
 constexpr double hardly_moves = 1e-6;
+/// Steps of a bracketed root, each fourth of which halves the bracket.
+constexpr int most_evaluations = 240;
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// Of a normal impulse that is the smallest that locks.
 constexpr double roundoff = 1e-13;
 
@@ -59,25 +62,46 @@ class Sliding {
   [[nodiscard]] std::optional<Vector3> between(const End& first, const End& last) const {
     double from = first.angle;
     double to = last.angle;
-    Try low = first.there;
+    const Try& low = first.there;
     if (!low.possible || !last.there.possible || low.across * last.there.across > 0.0) {
       return std::nullopt;
     }
+    // Regula falsi in which an end that stays counts by half [Dowell1971]; each fourth step halves.
     Try middle = low;
-    for (int halvings = 0; halvings < 60 && to - from > 0.0; ++halvings) {
-      const double angle = 0.5 * (from + to);
-      middle = along(angle);
-      if (!middle.possible) {
-        return std::nullopt;
+    double of_low = low.across;
+    double of_high = last.there.across;
+    double before = from;
+    int stays = 0;  // < 0: the lower end did, > 0: the upper one
+    if (of_low == 0.0 || of_high == 0.0) {
+      middle = of_low == 0.0 ? low : last.there;
+      to = from;
+    }
+    for (int evaluations = 1; to > from && evaluations < most_evaluations; ++evaluations) {
+      double angle = from + (to - from) * (of_low / (of_low - of_high));
+      if (evaluations % 4 == 0 || !(angle > from && angle < to)) {
+        angle = 0.5 * (from + to);
       }
       if (angle == from || angle == to) {
         break;  // no number is between the two
       }
-      if (low.across * middle.across <= 0.0) {
+      middle = along(angle);
+      if (!middle.possible) {
+        return std::nullopt;
+      }
+      if (middle.across == 0.0 || std::abs(angle - before) <= epsilon * std::abs(angle)) {
+        break;
+      }
+      before = angle;
+      if ((of_low < 0.0) != (middle.across < 0.0)) {
         to = angle;
+        of_high = middle.across;
+        of_low = stays < 0 ? 0.5 * of_low : of_low;
+        stays = -1;
       } else {
         from = angle;
-        low = middle;
+        of_low = middle.across;
+        of_high = stays > 0 ? 0.5 * of_high : of_high;
+        stays = 1;
       }
     }
     if (middle.along < 0.0) {

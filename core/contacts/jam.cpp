@@ -1,5 +1,6 @@
 #include "core/contacts/jam.hpp"
 
+#include "core/contacts/cone_newton.hpp"
 #include "core/contacts/coulomb_cone.hpp"
 
 #include <Eigen/Geometry>
@@ -15,6 +16,10 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int most_sweeps = 20'000;
+/// What has not settled after so many sweeps, and after four times as many again and again, is
+/// looked for at all touches at once, if there are not too many.
+constexpr int newton_after = 64;
+constexpr std::size_t most_at_once = 32;
 /// Sweeps have settled that change velocities by less than this part of the fastest.
 constexpr double settled = 1e-14;
 
@@ -108,6 +113,7 @@ class Jams {
     const std::size_t n = now_.size();
     Jam found{before_, std::vector<char>(n, 0)};
     std::vector<Vector3> impulse(n, Vector3::Zero());
+    int at_once = n <= most_at_once ? newton_after : most_sweeps;
     for (int round = 0; round < most_sweeps; ++round) {
       double changed = 0.0;
       for (std::size_t k = 0; k < n; ++k) {
@@ -115,18 +121,17 @@ class Jams {
         if (W(0, 0) == 0.0) {
           continue;  // joints block it
         }
-        Vector3 q = Vector3(local_[k].rates(found.velocities)) - W * impulse[k];
-        for (int axis = 1; axis < 3; ++axis) {
-          q[axis] +=
-              local_[k].rows[static_cast<std::size_t>(axis)].direction.dot(state_.touches[k].belt);
-        }
-        q.x() -= more;
+        const Vector3 q = rates(k, found.velocities, more) - W * impulse[k];
         const Vector3 now = coulomb_impulse(W, q, friction(k));
         local_[k].push(now - impulse[k], found.velocities);
         changed = std::max(changed, (W * (now - impulse[k])).norm());
         impulse[k] = now;
       }
       if (!(changed <= settled * fastest_)) {
+        if (round == at_once) {
+          at_once *= 4;
+          settle_at_once(more, impulse, found.velocities);
+        }
         continue;
       }
       bool any = false;
@@ -138,6 +143,44 @@ class Jams {
       return any ? std::optional(std::move(found)) : std::nullopt;
     }
     return std::nullopt;
+  }
+
+  /// Along the normal and the tangents of a touch, approaching by `more` than it does, m/s.
+  [[nodiscard]] Vector3 rates(std::size_t k, const std::vector<Twist>& velocities,
+                              double more) const {
+    Vector3 u = local_[k].rates(velocities);
+    for (const int axis : {1, 2}) {
+      u[axis] +=
+          local_[k].rows[static_cast<std::size_t>(axis)].direction.dot(state_.touches[k].belt);
+    }
+    u.x() -= more;
+    return u;
+  }
+
+  /// Goes to what Newton's method finds from here on; the sweeps that follow judge it.
+  void settle_at_once(double more, std::vector<Vector3>& impulse, std::vector<Twist>& v) const {
+    const std::size_t n = now_.size();
+    const auto size = static_cast<Eigen::Index>(3 * n);
+    ContactSystem all{state_.bodies, {}, state_.joints};
+    ConeProblem problem{{}, Eigen::VectorXd(size), {}};
+    Eigen::VectorXd begin(size);
+    for (std::size_t k = 0; k < n; ++k) {
+      if (coupling_[k](0, 0) == 0.0) {
+        return;
+      }
+      const auto at = static_cast<Eigen::Index>(3 * k);
+      all.rows.insert(all.rows.end(), local_[k].rows.begin(), local_[k].rows.end());
+      problem.q.segment<3>(at) = rates(k, before_, more);
+      problem.friction.push_back(friction(k));
+      begin.segment<3>(at) = impulse[k];
+    }
+    problem.W = all.coupling();
+    const Eigen::VectorXd found = cone_newton(problem, begin, settled * fastest_);
+    v = before_;
+    for (std::size_t k = 0; k < n; ++k) {
+      impulse[k] = found.segment<3>(static_cast<Eigen::Index>(3 * k));
+      local_[k].push(impulse[k], v);
+    }
   }
 
   const TurningState& state_;

@@ -27,6 +27,13 @@ constexpr int most_solves = 3000;
 /// Equations that contradict each other by more than this part of the largest load do.
 constexpr double contradiction = 1e-9;
 
+/// A solve costs about the cube of the touches, and of many touches more than two would have to
+/// change: no search takes longer than one of a dozen.
+int most_solves_of(std::size_t touches) {
+  const double ratio = 12.0 / static_cast<double>(std::max<std::size_t>(touches, 12));
+  return static_cast<int>(most_solves * ratio * ratio * ratio);
+}
+
 class Search {
  public:
   Search(const TurningState& state, double still) : state_(state), forces_(state), still_(still) {}
@@ -96,7 +103,7 @@ class Search {
         !pressed.empty() && attempt(pressed)) {
       return true;
     }
-    most_ = forces_.solves() + most_solves;
+    most_ = forces_.solves() + most_solves_of(state_.touches.size());
     for (const std::size_t changes : {1U, 2U}) {
       for (const bool from_likely : {true, false}) {
         std::vector<Choice> choices = from_likely ? likely : as_is;

@@ -40,7 +40,7 @@ TEST_CASE("the impulse of a contact satisfies Coulomb's law on the exact cone", 
     const double mu = trial % 10 == 0 ? 0.0 : random.log_uniform(0.01, 3.0);
     const Vector3 p = coulomb_impulse(W, q, mu);
     const Vector3 u = W * p + q;
-    // Bisection to roundoff of an angle, felt by velocities as large as q: solver, 1e-9.
+    // A root to roundoff of an angle, felt by velocities as large as q: solver, 1e-9.
     const double tolerance = 1e-9 * q.norm() * (1.0 + mu);
     const double slip = u.tail<2>().norm();
     const double pushed = p.tail<2>().norm();
