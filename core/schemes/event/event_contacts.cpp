@@ -141,7 +141,7 @@ void EventContacts::stay(BodyIndex a, BodyIndex b, Instant t) {
   if (lands(a, b, contact, t) || settle_stalled(pair, t)) {
     return;
   }
-  if (meet_elsewhere(a, b, t)) {
+  if (meet_elsewhere(a, b, t) || end_by_pushing(pair, 0.0, t)) {
     return;
   }
   depart(a, b, t);
@@ -245,6 +245,9 @@ void EventContacts::touch(BodyIndex a, BodyIndex b, const Contact& contact, Inst
     if (const double until = comes_together(a, b, t, bracket); until > 0.0) {
       return run_.agenda.push(t + until, DueKind::impact, a, b);
     }
+    if (end_by_pushing(pair, 0.0, t)) {
+      return;
+    }
     depart(a, b, t);
     return run_.stop(t,
                      fmt::format("accumulation: {} stay in touch; {}", run_.names(a, b), unkept()));
@@ -305,7 +308,7 @@ void EventContacts::look_again(BodyIndex a, BodyIndex b, Instant t, double brack
   const double window = std::min({motions_.of(a).duration, motions_.of(b).duration, run_.epoch()});
   if (accumulation_.stalls(a, b, t, least_progress * window)) {
     const std::array<BodyIndex, 2> pair{a, b};
-    if (settle_stalled(pair, t) || meet_elsewhere(a, b, t)) {
+    if (settle_stalled(pair, t) || meet_elsewhere(a, b, t) || end_by_pushing(pair, 0.0, t)) {
       return;
     }
     return run_.stop(t, fmt::format("accumulation: whether {} touch is undecided again and again, "

@@ -258,7 +258,7 @@ void EventContacts::go_on_as_found(const Event& event, const EventAccumulation::
     if (finding.kind == Kind::rests && meet_elsewhere(a, b, t)) {
       return;
     }
-    if (finding.kind != Kind::rests && end_by_pushing(pair, finding.remaining, t)) {
+    if (end_by_pushing(pair, finding.remaining, t)) {
       return;
     }
   }
@@ -726,7 +726,7 @@ void EventContacts::go_on_from(std::span<const BodyIndex> bodies, const BodyPair
     return;
   }
   const bool endless = finding.kind != Kind::none && !finding.goes_on;
-  if (unite && !finding.goes_on && end_by_pushing(bodies, finding.remaining, t)) {
+  if (endless && finding.kind != Kind::squeezed && end_by_pushing(bodies, finding.remaining, t)) {
     return;
   }
   set_free(bodies, t);
