@@ -50,6 +50,10 @@ bool grow(Shape& shape, double more) {
 
 void SceneWatch::frame(const Frame& frame) {
   check_impacts();
+  for (auto& [pair, reached] : in_contact_) {
+    const auto& [a, b] = pair;
+    reached = std::max(reached, coordinates(a, frame.bodies[a], b, frame.bodies[b]));
+  }
   check_overlap(frame.bodies, frame.time);
   check_contacts(frame.bodies, frame.time);
   check_energy(frame);
@@ -69,7 +73,7 @@ void SceneWatch::event(const Event& event) {
     check_pair(event.a, event.before_a, event.b, event.before_b, event.time);
     at_once_.push_back(event);
   } else if (event.kind == EventKind::contact_begins) {
-    in_contact_.insert(pair);
+    in_contact_.emplace(pair, 0.0);
   } else if (event.kind == EventKind::contact_ends) {
     in_contact_.erase(pair);
   }
@@ -234,13 +238,23 @@ Pose SceneWatch::seen(BodyIndex b, Pose pose_b, BodyIndex a, const Pose& pose_a)
   return pose_b;
 }
 
+/// What a gap of the two is a sum of, m.
+double SceneWatch::coordinates(BodyIndex a, const BodyState& at_a, BodyIndex b,
+                               const BodyState& at_b) const {
+  return at_a.pose.position.lpNorm<1>() + at_b.pose.position.lpNorm<1>() +
+         coordinates_of(model_->shape(a)) + coordinates_of(model_->shape(b));
+}
+
 /// By geometry of its own, which no detector shares.
 void SceneWatch::check_pair(BodyIndex a, const BodyState& state_a, BodyIndex b,
                             const BodyState& state_b, Instant t) const {
   const Pose pose_b = seen(b, state_b.pose, a, state_a.pose);
   const double depth = plain_depth(model_->shape(a), state_a.pose, model_->shape(b), pose_b);
-  const double scale = state_a.pose.position.lpNorm<1>() + state_b.pose.position.lpNorm<1>() +
-                       coordinates_of(model_->shape(a)) + coordinates_of(model_->shape(b));
+  double scale = coordinates(a, state_a, b, state_b);
+  // A contact that lasts keeps what its gap was rounded to where it has been.
+  if (const auto held = in_contact_.find(std::minmax(a, b)); held != in_contact_.end()) {
+    scale = std::max(scale, held->second);
+  }
   // Bodies in touch may stay so to 16 times the bound of a gap's rounding, 12 eps of what it is a
   // sum of (ccd/README.md, eq. 11); less is no overlap that could be told from none.
   constexpr double hidden = 16.0 * 12.0 * epsilon;
@@ -254,7 +268,8 @@ void SceneWatch::check_pair(BodyIndex a, const BodyState& state_a, BodyIndex b,
 
 /// Bodies that are told to be in contact are: one that reaches a little farther overlaps the other.
 void SceneWatch::check_contacts(std::span<const BodyState> bodies, Instant t) const {
-  for (const auto& [a, b] : in_contact_) {
+  for (const auto& [pair, reached] : in_contact_) {
+    const auto& [a, b] = pair;
     Shape shape_a = model_->shape(a);
     Shape shape_b = model_->shape(b);
     const double more = in_touch * (radius_of(shape_a) + radius_of(shape_b));

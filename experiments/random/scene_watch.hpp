@@ -5,7 +5,7 @@
 #include "experiments/random/scene_trial.hpp"
 
 #include <array>
-#include <set>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,6 +40,8 @@ class SceneWatch : public Recorder {
   void check_impacts();
   [[nodiscard]] double handed_on(const Event& event) const;
   [[nodiscard]] double momentum(const Event& event) const;
+  [[nodiscard]] double coordinates(BodyIndex a, const BodyState& at_a, BodyIndex b,
+                                   const BodyState& at_b) const;
   void check_overlap(std::span<const BodyState> bodies, Instant t) const;
   void check_pair(BodyIndex a, const BodyState& state_a, BodyIndex b, const BodyState& state_b,
                   Instant t) const;
@@ -50,7 +52,8 @@ class SceneWatch : public Recorder {
   const Model* model_ = nullptr;
   std::int64_t events_ = 0;
   std::vector<Event> at_once_;  ///< impacts of one instant, not yet checked
-  std::set<std::pair<BodyIndex, BodyIndex>> in_contact_;
+  /// Pairs in contact, and the largest coordinates that they had since that began, m.
+  std::map<std::pair<BodyIndex, BodyIndex>, double> in_contact_;
   std::array<double, 3> dissipated_{};  ///< J, <= 0, up to the last frame
 };
 
