@@ -18,6 +18,15 @@ using Eigen::VectorXd;
 constexpr int most_steps = 30;
 /// So many steps that do not halve what is left get no nearer.
 constexpr int most_idle = 12;
+/// Proximal points: the first compliance as a part of that of a touch, how it shrinks, how well a
+/// problem with it must be solved, as a part of what is left, and how many there are.
+constexpr double first_compliance = 0.1;
+constexpr double shrink = 0.3;
+constexpr double solved = 1e-2;
+constexpr int most_rounds = 30;
+/// Newton's method alone pays with so many touches at most.
+constexpr std::size_t few_touches = 32;
+constexpr double nearly_rough = 100.0;
 
 /// What impulses are off: zero where all is kept, m/s by touch, and how it changes with them.
 class Projections {
@@ -98,8 +107,10 @@ class Projections {
     return J;
   }
 
-  /// What opens takes no impulse at all, and what has no friction none across.
-  void make_exact(VectorXd& p) const {
+  /// Into the cones, which the nearest may miss by what it is off: what opens takes no impulse at
+  /// all, and what has no friction none across.
+  void make_exact(ConeImpulses& nearest) const {
+    VectorXd& p = nearest.impulse;
     const VectorXd u = of_.W * p + of_.q;
     for (std::size_t k = 0; k < felt_.size(); ++k) {
       const Eigen::Index at = place(k);
@@ -109,10 +120,16 @@ class Projections {
       if (does == Does::opens || does == Does::holds_along) {
         p[at] = 0.0;
       }
+      p[at] = std::max(p[at], 0.0);
+      const double most = of_.friction[k] * p[at];
+      const double across = pk.tail<2>().norm();
       if (does == Does::opens || of_.friction[k] == 0.0) {
         p.segment<2>(at + 1).setZero();
+      } else if (!std::isinf(of_.friction[k]) && across > most) {
+        p.segment<2>(at + 1) *= most / across;
       }
     }
+    nearest.off = off(p).lpNorm<Eigen::Infinity>();
   }
 
  private:
@@ -138,27 +155,71 @@ class Projections {
 
 }  // namespace
 
-VectorXd cone_newton(const ConeProblem& problem, const VectorXd& begin, double settled) {
+ConeImpulses cone_newton(const ConeProblem& problem, const VectorXd& begin, double settled) {
   const Projections projections(problem);
-  VectorXd nearest = begin;
-  double least = projections.off(begin).lpNorm<Eigen::Infinity>();
+  ConeImpulses nearest{begin, projections.off(begin).lpNorm<Eigen::Infinity>()};
   for (VectorXd p : {begin, VectorXd(VectorXd::Zero(begin.size()))}) {
-    for (int steps = 0, idle = 0; idle < most_idle && steps < most_steps && least > settled;
+    for (int steps = 0, idle = 0; idle < most_idle && steps < most_steps && nearest.off > settled;
          ++steps, ++idle) {
       p -= least_norm(projections.change(p), projections.off(p));
       const double off = projections.off(p).lpNorm<Eigen::Infinity>();
       if (!std::isfinite(off)) {
         break;
       }
-      if (off < least) {
-        idle = off < 0.5 * least ? 0 : idle;
-        least = off;
-        nearest = p;
+      if (off < nearest.off) {
+        idle = off < 0.5 * nearest.off ? 0 : idle;
+        nearest = {p, off};
       }
     }
   }
   projections.make_exact(nearest);
   return nearest;
+}
+
+ConeImpulses cone_proximal(const ConeProblem& problem, const VectorXd& begin, double settled) {
+  const Projections projections(problem);
+  const double scale = problem.W.diagonal().mean();
+  const auto off = [&](const VectorXd& p) { return projections.off(p).lpNorm<Eigen::Infinity>(); };
+  ConeImpulses nearest{begin, off(begin)};
+  VectorXd p = VectorXd::Zero(begin.size());
+  double here = off(p);
+  double compliance = first_compliance * scale;
+  for (int round = 0; round < most_rounds && nearest.off > settled; ++round) {
+    ConeProblem with = problem;
+    with.W.diagonal().array() += compliance;
+    with.q -= compliance * p;
+    const ConeImpulses found = cone_newton(with, p, 0.1 * settled);
+    if (!(found.off <= solved * here)) {
+      compliance *= 4.0;
+      continue;
+    }
+    p = found.impulse;
+    const double now = off(p);
+    compliance *= now < here ? shrink : 1.0;
+    here = now;
+    if (here < nearest.off) {
+      nearest = {p, here};
+    }
+  }
+  projections.make_exact(nearest);
+  return nearest;
+}
+
+ConeImpulses cone_at_once(const ConeProblem& problem, const VectorXd& begin, double settled,
+                          int attempt) {
+  if (attempt == 0 && problem.friction.size() <= few_touches) {
+    return cone_newton(problem, begin, settled);
+  }
+  if (attempt == 1) {
+    return cone_proximal(problem, begin, settled);
+  }
+  const auto is_rough = [](double mu) { return std::isinf(mu); };
+  if (attempt == 2 && std::any_of(problem.friction.begin(), problem.friction.end(), is_rough)) {
+    ConeProblem bounded = problem;
+    std::replace_if(bounded.friction.begin(), bounded.friction.end(), is_rough, nearly_rough);
+    return cone_proximal(bounded, begin, settled);
+  }
+  return {begin, Projections(problem).off(begin).lpNorm<Eigen::Infinity>()};
 }
 
 }  // namespace core

@@ -15,6 +15,12 @@ struct ConeProblem {
   std::vector<double> friction;  ///< by touch, >= 0; infinite: rough
 };
 
+/// Impulses, and what they are off.
+struct ConeImpulses {
+  Eigen::VectorXd impulse;  ///< N s, 3 by touch
+  double off = 0.0;         ///< m/s: of velocities, or of what impulses do alone; 0: all is kept
+};
+
 /// Newton's method on the projections onto the cones, which are differentiable in pieces
 /// [AlartCurnier1991]; of the steps that are as good the shortest, as touches may be redundant. It
 /// comes to the end in few steps where sweeps touch by touch hardly move: light bodies between
@@ -22,8 +28,23 @@ struct ConeProblem {
 /// @param begin    impulses to begin with, N s, finite
 /// @param settled  what is near enough, m/s
 /// @returns the impulses that came nearest: maybe those to begin with
-[[nodiscard]] Eigen::VectorXd cone_newton(const ConeProblem& problem, const Eigen::VectorXd& begin,
-                                          double settled);
+[[nodiscard]] ConeImpulses cone_newton(const ConeProblem& problem, const Eigen::VectorXd& begin,
+                                       double settled);
+
+/// The same where Newton's method goes round in a circle, as among many redundant touches: the
+/// proximal point algorithm [Rockafellar1976, Acary2018]. Each touch is given a compliance against
+/// the impulses so far, which makes it a problem that Newton's method solves; the compliance
+/// shrinks.
+[[nodiscard]] ConeImpulses cone_proximal(const ConeProblem& problem, const Eigen::VectorXd& begin,
+                                         double settled);
+
+/// More touches than these are not looked at all at once.
+constexpr std::size_t most_at_once = 96;
+/// For the attempts at one problem, from 0 on, each worth more work than the one before: Newton's
+/// method, where touches are few; the proximal points; these with friction of 100 where touches are
+/// rough, as what is hardly pressed and has no bound may be held by nothing at all.
+[[nodiscard]] ConeImpulses cone_at_once(const ConeProblem& problem, const Eigen::VectorXd& begin,
+                                        double settled, int attempt);
 
 }  // namespace core
 }  // namespace kairos

@@ -20,9 +20,8 @@ constexpr int damped_from = 1000;
 constexpr double nearly_settled = 1e4;
 constexpr int idle_sweeps = 64;
 /// What has not settled after so many sweeps, and after four times as many again and again, is
-/// looked for at all touches at once, if there are not too many.
-constexpr int newton_after = 64;
-constexpr std::size_t most_at_once = 32;
+/// looked for at all touches at once, see `at_once`.
+constexpr int at_once_after = 64;
 
 }  // namespace
 
@@ -64,7 +63,8 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
   }
   double least = nearly_settled * settled;
   int idle = 0;
-  int at_once = blocks_.size() <= most_at_once ? newton_after : most_sweeps;
+  int at_once = blocks_.size() <= most_at_once ? at_once_after : most_sweeps;
+  int attempt = 0;
   for (int round = 0; round < most_sweeps; ++round) {
     swept.changed = 0.0;
     swept.solves += static_cast<int>(blocks_.size());
@@ -92,7 +92,12 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
     }
     if (round == at_once) {
       at_once *= 4;
-      settle_at_once(velocities, rates, settled, rubs, along, swept.velocities);
+      const double off =
+          settle_at_once(velocities, rates, settled, rubs, attempt++, along, swept.velocities);
+      if (off <= settled) {
+        swept.changed = off;
+        break;
+      }
     }
   }
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
@@ -101,10 +106,12 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
   return swept;
 }
 
-/// Goes to what Newton's method finds from here on; the sweeps that follow judge it.
-void ContactSweeps::settle_at_once(const std::vector<Vector6>& free, std::span<const Vector3> rates,
-                                   double settled, bool rubs, std::vector<Vector3>& along,
-                                   std::vector<Vector6>& velocities) const {
+/// Goes to the nearest that is found at all touches at once from here on, and returns how far it is
+/// off, m/s.
+double ContactSweeps::settle_at_once(const std::vector<Vector6>& free,
+                                     std::span<const Vector3> rates, double settled, bool rubs,
+                                     int attempt, std::vector<Vector3>& along,
+                                     std::vector<Vector6>& velocities) const {
   const std::size_t n = blocks_.size();
   const auto size = static_cast<Eigen::Index>(3 * n);
   ConeProblem problem{Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd(size), {}};
@@ -127,12 +134,13 @@ void ContactSweeps::settle_at_once(const std::vector<Vector6>& free, std::span<c
       }
     }
   }
-  const Eigen::VectorXd found = cone_newton(problem, begin, settled);
+  const ConeImpulses found = cone_at_once(problem, begin, settled, attempt);
   velocities = free;
   for (std::size_t k = 0; k < n; ++k) {
-    along[k] = found.segment<3>(static_cast<Eigen::Index>(3 * k));
+    along[k] = found.impulse.segment<3>(static_cast<Eigen::Index>(3 * k));
     push_along(blocks_[k], along[k], velocities);
   }
+  return found.off;
 }
 
 Vector3 ContactSweeps::rate(std::size_t touch, const std::vector<Vector6>& v) const {

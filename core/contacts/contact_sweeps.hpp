@@ -24,7 +24,7 @@ struct SweptTouch {
 /// Impulses at all touches at once that push and never pull, within the cones of friction, after
 /// which nothing approaches and what is pressed does not part: touch by touch, all others as they
 /// are, again and again [Moreau1988, Jourdan1998]; where that hardly moves, at all touches at once
-/// by Newton's method (`cone_newton`).
+/// (`cone_at_once`).
 class ContactSweeps {
  public:
   using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -67,9 +67,9 @@ class ContactSweeps {
     Matrix3 W;
     double friction = 0.0;
   };
-  void settle_at_once(const std::vector<Vector6>& free, std::span<const Vector3> rates,
-                      double settled, bool rubs, std::vector<Vector3>& along,
-                      std::vector<Vector6>& velocities) const;
+  double settle_at_once(const std::vector<Vector6>& free, std::span<const Vector3> rates,
+                        double settled, bool rubs, int attempt, std::vector<Vector3>& along,
+                        std::vector<Vector6>& velocities) const;
   static void push_along(const Block& block, const Vector3& impulse, std::vector<Vector6>& v);
 
   std::vector<Block> blocks_;

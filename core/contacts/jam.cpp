@@ -17,9 +17,8 @@ namespace {
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int most_sweeps = 20'000;
 /// What has not settled after so many sweeps, and after four times as many again and again, is
-/// looked for at all touches at once, if there are not too many.
-constexpr int newton_after = 64;
-constexpr std::size_t most_at_once = 32;
+/// looked for at all touches at once, see `at_once`.
+constexpr int at_once_after = 64;
 /// Sweeps have settled that change velocities by less than this part of the fastest.
 constexpr double settled = 1e-14;
 
@@ -113,7 +112,8 @@ class Jams {
     const std::size_t n = now_.size();
     Jam found{before_, std::vector<char>(n, 0)};
     std::vector<Vector3> impulse(n, Vector3::Zero());
-    int at_once = n <= most_at_once ? newton_after : most_sweeps;
+    int at_once = n <= most_at_once ? at_once_after : most_sweeps;
+    int attempt = 0;
     for (int round = 0; round < most_sweeps; ++round) {
       double changed = 0.0;
       for (std::size_t k = 0; k < n; ++k) {
@@ -128,11 +128,14 @@ class Jams {
         impulse[k] = now;
       }
       if (!(changed <= settled * fastest_)) {
+        bool found_at_once = false;
         if (round == at_once) {
           at_once *= 4;
-          settle_at_once(more, impulse, found.velocities);
+          found_at_once = settle_at_once(more, attempt++, impulse, found.velocities);
         }
-        continue;
+        if (!found_at_once) {
+          continue;
+        }
       }
       bool any = false;
       for (std::size_t k = 0; k < n; ++k) {
@@ -157,8 +160,9 @@ class Jams {
     return u;
   }
 
-  /// Goes to what Newton's method finds from here on; the sweeps that follow judge it.
-  void settle_at_once(double more, std::vector<Vector3>& impulse, std::vector<Twist>& v) const {
+  /// Goes to the nearest that is found at all touches at once from here on; whether it is it.
+  bool settle_at_once(double more, int attempt, std::vector<Vector3>& impulse,
+                      std::vector<Twist>& v) const {
     const std::size_t n = now_.size();
     const auto size = static_cast<Eigen::Index>(3 * n);
     ContactSystem all{state_.bodies, {}, state_.joints};
@@ -166,7 +170,7 @@ class Jams {
     Eigen::VectorXd begin(size);
     for (std::size_t k = 0; k < n; ++k) {
       if (coupling_[k](0, 0) == 0.0) {
-        return;
+        return false;
       }
       const auto at = static_cast<Eigen::Index>(3 * k);
       all.rows.insert(all.rows.end(), local_[k].rows.begin(), local_[k].rows.end());
@@ -175,12 +179,13 @@ class Jams {
       begin.segment<3>(at) = impulse[k];
     }
     problem.W = all.coupling();
-    const Eigen::VectorXd found = cone_newton(problem, begin, settled * fastest_);
+    const ConeImpulses found = cone_at_once(problem, begin, settled * fastest_, attempt);
     v = before_;
     for (std::size_t k = 0; k < n; ++k) {
-      impulse[k] = found.segment<3>(static_cast<Eigen::Index>(3 * k));
+      impulse[k] = found.impulse.segment<3>(static_cast<Eigen::Index>(3 * k));
       local_[k].push(impulse[k], v);
     }
+    return found.off <= settled * fastest_;
   }
 
   const TurningState& state_;

@@ -3,11 +3,14 @@
 #include "core/contacts/cone_newton.hpp"
 
 #include "core/contacts/contact_sweeps.hpp"
+#include "core/contacts/contact_system.hpp"
 #include "core/random.hpp"
 #include "tests/catch.hpp"
 
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 using namespace kairos;
 
@@ -30,6 +33,72 @@ SweptTouch touch(const std::vector<GroupBody>& bodies, std::size_t a, std::size_
   const Vector3 apart = bodies[b].position - bodies[a].position;
   const Vector3 point = bodies[a].position + 0.5 * apart;
   return {a, b, apart.normalized(), point, point, friction};
+}
+
+/// Signorini's and Coulomb's law at each touch.
+bool keeps_the_law(const ConeProblem& problem, const Eigen::VectorXd& p, double tolerance) {
+  const Eigen::VectorXd u = problem.W * p + problem.q;
+  bool keeps = true;
+  for (Eigen::Index k = 0; 3 * k < p.size(); ++k) {
+    const Eigen::Vector3d pk = p.segment<3>(3 * k), uk = u.segment<3>(3 * k);
+    const double mu = problem.friction[static_cast<std::size_t>(k)];
+    const double pushed = pk.tail<2>().norm(), slip = uk.tail<2>().norm();
+    keeps = keeps && pk[0] >= -tolerance && uk[0] >= -tolerance &&
+            std::abs(pk[0] * uk[0]) <= tolerance &&
+            (std::isinf(mu) ? pk[0] * slip <= tolerance
+                            : pushed <= mu * pk[0] + tolerance &&
+                                  pk.tail<2>().dot(uk.tail<2>()) <=
+                                      -mu * std::max(pk[0], 0.0) * slip + tolerance);
+  }
+  return keeps;
+}
+
+/// A wall of cubes of 1 m on a floor, each of which touches its neighbours and what is below it at
+/// four corners: 24 numbers of a row say what six suffice for. Each cube moves at random.
+ConeProblem wall(int wide, int high, Random& random) {
+  const auto cubes = static_cast<std::size_t>(wide * high);
+  ContactSystem system;
+  for (std::size_t i = 0; i < cubes; ++i) {
+    const double mass = std::pow(10.0, random.uniform(-1.5, 1.5));
+    GroupBody body;
+    body.inverse_mass = 1.0 / mass;
+    body.inverse_inertia = 6.0 / mass * Matrix3::Identity();
+    body.position = {static_cast<double>(i % static_cast<std::size_t>(wide)),
+                     static_cast<double>(i / static_cast<std::size_t>(wide)), 0.0};
+    system.bodies.push_back(body);
+  }
+  system.bodies.emplace_back();  // the floor
+  ConeProblem problem;
+  const auto face = [&](std::size_t a, std::size_t b, const Vector3& middle, const Vector3& n) {
+    const double mu = random.uniform(0.0, 1.0);
+    const Vector3 t = n.unitOrthogonal();
+    const Vector3 s = n.cross(t);
+    for (const auto& [x, y] : {std::pair{-0.5, -0.5}, {-0.5, 0.5}, {0.5, 0.5}, {0.5, -0.5}}) {
+      problem.friction.push_back(mu);
+      for (const Vector3& d : {n, t, s}) {
+        system.add(a, b, middle + x * t + y * s, d);
+      }
+    }
+  };
+  for (std::size_t i = 0; i < cubes; ++i) {
+    const Vector3& at = system.bodies[i].position;
+    const bool first = at.x() == 0.0, lowest = at.y() == 0.0;
+    face(lowest ? cubes : i - static_cast<std::size_t>(wide), i, at - 0.5 * Vector3::UnitY(),
+         Vector3::UnitY());
+    if (!first) {
+      face(i - 1, i, at - 0.5 * Vector3::UnitX(), Vector3::UnitX());
+    }
+  }
+  std::vector<Twist> v(cubes + 1);
+  for (std::size_t i = 0; i < cubes; ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      v[i].linear[axis] = random.uniform(-1.0, 1.0);
+      v[i].angular[axis] = random.uniform(-1.0, 1.0);
+    }
+  }
+  problem.W = system.coupling();
+  problem.q = system.rates(v);
+  return problem;
 }
 
 Vector6 falling(double speed) { return (Vector6() << 0.0, -speed, 0.0, 0.0, 0.0, 0.0).finished(); }
@@ -62,27 +131,32 @@ TEST_CASE("Newton's method on cones finds impulses that satisfy Coulomb's law, w
       problem.friction.push_back(k % 5 == 4 ? infinity : k % 5 == 3 ? 0.0 : mu);
     }
     constexpr double settled = 1e-12;  // of velocities near 1
-    const Eigen::VectorXd p = cone_newton(problem, Eigen::VectorXd::Zero(rows), settled);
-    const Eigen::VectorXd u = problem.W * p + problem.q;
+    const Eigen::VectorXd p = cone_newton(problem, Eigen::VectorXd::Zero(rows), settled).impulse;
     // What is off in a touch is measured in velocities, and felt by compliances up to 30.
-    const double tolerance = 1e-10 * (1.0 + p.norm());
-    bool keeps = true;
-    for (Eigen::Index k = 0; k < touches; ++k) {
-      const Eigen::Vector3d pk = p.segment<3>(3 * k), uk = u.segment<3>(3 * k);
-      const double mu = problem.friction[static_cast<std::size_t>(k)];
-      const double pushed = pk.tail<2>().norm(), slip = uk.tail<2>().norm();
-      keeps = keeps && pk[0] >= -tolerance && uk[0] >= -tolerance &&
-              std::abs(pk[0] * uk[0]) <= tolerance &&
-              (std::isinf(mu) ? pk[0] * slip <= tolerance
-                              : pushed <= mu * pk[0] + tolerance &&
-                                    pk.tail<2>().dot(uk.tail<2>()) <=
-                                        -mu * std::max(pk[0], 0.0) * slip + tolerance);
-    }
-    found += keeps ? 1 : 0;
+    found += keeps_the_law(problem, p, 1e-10 * (1.0 + p.norm())) ? 1 : 0;
   }
   CAPTURE(found);
   // It may go round in a circle, and tells its best then: 21 times of 2,000 here.
   CHECK(found >= trials - 40);
+}
+
+TEST_CASE("proximal points find the impulses of walls, whose touches are redundant", "[friction]") {
+  Random random(20261127);
+  int newton = 0;
+  int proximal = 0;
+  constexpr int trials = 40;
+  for (int trial = 0; trial < trials; ++trial) {
+    const ConeProblem problem = wall(1 + trial % 3, 1 + trial % 4, random);
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(problem.q.size());
+    constexpr double settled = 1e-12;  // of velocities near 1
+    const Eigen::VectorXd p = cone_proximal(problem, none, settled).impulse;
+    // Impulses are of masses up to 30.
+    proximal += keeps_the_law(problem, p, 1e-10 * (1.0 + p.norm())) ? 1 : 0;
+    newton += cone_newton(problem, none, settled).off <= settled ? 1 : 0;
+  }
+  CAPTURE(newton, proximal);
+  CHECK(newton < proximal);
+  CHECK(proximal >= trials - 2);
 }
 
 TEST_CASE("a light ball between heavy ones is settled in few sweeps", "[friction]") {
