@@ -22,6 +22,7 @@ constexpr double solve_roundoff = FrictionForces::solve_roundoff;
 constexpr double project_roundoff = 64.0 * epsilon;
 /// Up to so many touches all combinations are tried: 3^6.
 constexpr std::size_t most_touches = 6;
+constexpr const char* turns_in_touch = "a body turns while it touches";
 constexpr int most_turns = 50;  ///< of the direction in which something begins to slide
 
 /// The search for the mode of one group: proposes, and asks `FrictionForces` to verify.
@@ -72,7 +73,7 @@ class Attempt {
         continue;
       }
       if (w.norm() * group_.radius[i] > project_roundoff * fastest_ || !moves(group_.bodies[i])) {
-        return refuse("a body turns while it touches");
+        return refuse(turns_in_touch);
       }
       w.setZero();
     }
@@ -338,21 +339,17 @@ bool idle(const ContactGroup& group, const FlatMode& mode) {
   return true;
 }
 
-}  // namespace
-
-bool has_friction(const ContactGroup& group) {
-  return std::any_of(group.patches.begin(), group.patches.end(),
-                     [](const GroupPatch& patch) { return patch.friction > 0.0; });
+/// Velocity of b relative to a where they touch, m/s.
+Vector3 slip_at(const ContactGroup& group, const GroupPatch& patch, const Vector3& point) {
+  const auto at = [&](std::size_t i) {
+    const Twist& v = group.velocities[i];
+    return Vector3(v.linear + v.angular.cross(point - group.bodies[i].position));
+  };
+  return at(patch.b) - at(patch.a);
 }
 
-FlatMode friction_mode(const ContactGroup& group, const FlatModeOptions& options) {
-  return Attempt(group, options).result();
-}
-
-FlatMode contact_mode(const ContactGroup& group, const FlatModeOptions& options) {
-  if (!has_friction(group)) {
-    return flat_mode(group, options);
-  }
+/// Without asking for what turns slowly.
+FlatMode mode_with_friction(const ContactGroup& group, const FlatModeOptions& options) {
   FlatMode smooth = flat_mode(group, options);
   if (!smooth.refusal.empty() || !idle(group, smooth)) {
     return friction_mode(group, options);
@@ -369,6 +366,127 @@ FlatMode contact_mode(const ContactGroup& group, const FlatModeOptions& options)
     }
   }
   return smooth;
+}
+
+/// Whether all points of a patch are at rest along its normal.
+bool rests(const ContactGroup& group, const GroupPatch& patch) {
+  for (std::size_t k = 0; k < patch.manifold.size; ++k) {
+    const Vector3 v = slip_at(group, patch, patch.manifold.points[k].position);
+    if (std::abs(patch.manifold.normal.dot(v)) > patch.rest_speed) {
+      return false;
+    }
+  }
+  return patch.manifold.size > 0;
+}
+
+/// Whether friction stops all points of a patch on a way as short as the hops that count as rest:
+/// v^2 <= 2 mu a h, where hops have u^2 <= 2 a h.
+bool stops_at_once(const ContactGroup& group, const GroupPatch& patch) {
+  if (!patch.drift.isZero(0.0)) {
+    return false;
+  }
+  const double still = std::sqrt(std::min(patch.friction, 1.0)) * patch.rest_speed;
+  for (std::size_t k = 0; k < patch.manifold.size; ++k) {
+    const Vector3 v = slip_at(group, patch, patch.manifold.points[k].position);
+    const Vector3& n = patch.manifold.normal;
+    if (!((v - n * n.dot(v)).norm() <= still)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// The velocities with nothing left of the rates of these patches, nor, where friction stops that
+/// at once, of their slip.
+std::vector<Twist> held_still(const ContactGroup& group, const std::vector<char>& held) {
+  ContactSystem system{group.bodies, {}};
+  double fastest = 0.0;
+  for (std::size_t i = 0; i < group.bodies.size(); ++i) {
+    const Twist& v = group.velocities[i];
+    fastest = std::max(fastest, v.linear.norm() + v.angular.norm() * group.radius[i]);
+  }
+  for (std::size_t p = 0; p < group.patches.size(); ++p) {
+    const GroupPatch& patch = group.patches[p];
+    const Vector3& n = patch.manifold.normal;
+    const bool stops = held[p] != 0 && stops_at_once(group, patch);
+    const Vector3 s = n.unitOrthogonal();
+    for (std::size_t k = 0; k < patch.manifold.size && held[p] != 0; ++k) {
+      const Vector3& point = patch.manifold.points[k].position;
+      system.add(patch.a, patch.b, point, n);
+      if (stops) {
+        system.add(patch.a, patch.b, point, s);
+        system.add(patch.a, patch.b, point, n.cross(s));
+      }
+    }
+  }
+  std::vector<Twist> v = group.velocities;
+  (void)system.project(v);
+  const double roundoff = project_roundoff * fastest;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    if (v[i].angular.norm() * group.radius[i] <= roundoff) {
+      v[i].angular.setZero();
+    }
+    if (v[i].linear.norm() <= roundoff) {
+      v[i].linear.setZero();
+    }
+  }
+  return v;
+}
+
+/// What turns no faster than what is at rest may, and is pressed so that it stays, is at rest;
+/// `refused` where that is not so.
+FlatMode laid_still(const ContactGroup& group, const FlatModeOptions& options, FlatMode refused) {
+  std::vector<char> held;
+  for (const GroupPatch& patch : group.patches) {
+    held.push_back(rests(group, patch) ? 1 : 0);
+  }
+  while (std::any_of(held.begin(), held.end(), [](char h) { return h != 0; })) {
+    ContactGroup still = group;
+    still.velocities = held_still(group, held);
+    FlatMode mode = mode_with_friction(still, options);
+    mode.solves += refused.solves;
+    if (!mode.refusal.empty()) {
+      break;
+    }
+    // What does not press holds nothing still.
+    bool fewer = false;
+    for (std::size_t p = 0; p < held.size(); ++p) {
+      const bool presses = mode.kept[p] != 0 && mode.pressing[p] > 0.0;
+      fewer = fewer || (held[p] != 0 && !presses);
+      held[p] = held[p] != 0 && presses ? 1 : 0;
+    }
+    if (!fewer) {
+      for (std::size_t p = 0; p < held.size(); ++p) {
+        for (std::size_t k = 0; k < group.patches[p].manifold.size; ++k) {
+          const GroupPatch& patch = group.patches[p];
+          const Vector3 v = slip_at(group, patch, patch.manifold.points[k].position);
+          mode.rate[p] = std::max(mode.rate[p], std::abs(patch.manifold.normal.dot(v)));
+        }
+      }
+      return mode;
+    }
+    refused.solves = mode.solves;
+  }
+  return refused;
+}
+
+}  // namespace
+
+bool has_friction(const ContactGroup& group) {
+  return std::any_of(group.patches.begin(), group.patches.end(),
+                     [](const GroupPatch& patch) { return patch.friction > 0.0; });
+}
+
+FlatMode friction_mode(const ContactGroup& group, const FlatModeOptions& options) {
+  return Attempt(group, options).result();
+}
+
+FlatMode contact_mode(const ContactGroup& group, const FlatModeOptions& options) {
+  if (!has_friction(group)) {
+    return flat_mode(group, options);
+  }
+  FlatMode mode = mode_with_friction(group, options);
+  return mode.refusal == turns_in_touch ? laid_still(group, options, std::move(mode)) : mode;
 }
 
 }  // namespace core

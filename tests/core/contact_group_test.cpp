@@ -2,6 +2,7 @@
 
 #include "core/contacts/complementarity.hpp"
 #include "core/contacts/flat_modes.hpp"
+#include "core/contacts/friction_modes.hpp"
 #include "core/contacts/group_impacts.hpp"
 #include "core/random.hpp"
 #include "tests/catch.hpp"
@@ -87,6 +88,42 @@ Balls cradle() {
 }
 
 }  // namespace
+
+TEST_CASE(
+    "what turns and slides so slowly that its hops count as rest is at rest, with friction, too",
+    "[friction]") {
+  Random random(20261127);
+  constexpr double rest = 1e-6;
+  for (int trial = 0; trial < 200; ++trial) {
+    ContactGroup group = stack(2);
+    group.round.assign(group.bodies.size(), 0);
+    for (GroupPatch& patch : group.patches) {
+      patch.friction = random.uniform(0.1, 2.0);
+      patch.rest_speed = rest;
+    }
+    const auto push = [&](Vector3& v, double speed) {
+      for (int axis = 0; axis < 3; ++axis) {
+        v[axis] = random.uniform(-speed, speed);
+      }
+    };
+    for (const std::size_t i : {1U, 2U}) {  // corners are .87 m from the middle
+      push(group.velocities[i].linear, 0.03 * rest);
+      push(group.velocities[i].angular, 0.03 * rest);
+    }
+    const FlatMode still = contact_mode(group, {});
+    CAPTURE(trial, still.refusal);
+    REQUIRE(still.refusal.empty());
+    for (const std::size_t i : {1U, 2U}) {
+      CHECK(still.velocities[i].linear.isZero(0.0));
+      CHECK(still.velocities[i].angular.isZero(0.0));
+      CHECK(still.pressing[i - 1] == Approx(g * static_cast<double>(3 - i)));
+      CHECK(still.rate[i - 1] > 0.0);  // it hopped, which the books have to know
+    }
+    // One that is thrown up turns on.
+    group.velocities[2].angular.x() = 4.0 * rest;
+    CHECK_FALSE(contact_mode(group, {}).refusal.empty());
+  }
+}
 
 TEST_CASE("a stack at rest: each patch carries what is above it, in one solve", "[contacts]") {
   for (const std::size_t n : {1U, 10U, 40U}) {
