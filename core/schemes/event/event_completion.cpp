@@ -19,7 +19,9 @@ using Vector6 = ContactSweeps::Vector6;
 constexpr double settled = 1e-13;
 constexpr double accepted = 1e-8;
 /// What was pushed apart and comes together again and again gets nowhere: so often in a frame.
-constexpr int most_pushes = 64;
+constexpr int most_pushes = 1000;
+/// After so many the last impact of a collapse is taken for one of its end.
+constexpr int few_pushes = 8;
 
 Vector6 stacked(const Twist& v) { return (Vector6() << v.linear, v.angular).finished(); }
 
@@ -45,14 +47,18 @@ std::vector<SweptTouch> touches_of(const EventModes::GroupImpact& impact, const 
 /// took an impulse has been in contact, and is told so. Where nothing is left to push, what is in
 /// touch is settled. False, and nothing has changed, where neither is possible, or it was done too
 /// often.
-bool EventContacts::end_by_pushing(std::span<const BodyIndex> seeds, double remaining, Instant t) {
+bool EventContacts::end_by_pushing(std::span<const BodyIndex> seeds, double remaining, Instant t,
+                                   const Event* last) {
   const double frame = std::floor(t.seconds / run_.mean_frame);
   pushed_ = pushed_in_ == frame ? pushed_ + 1 : 1;
   pushed_in_ = frame;
   if (pushed_ > most_pushes) {
     return false;
   }
-  EventModes::GroupImpact impact = modes_.impact_group(seeds, t, true);
+  if (pushed_ <= few_pushes) {
+    last = nullptr;
+  }
+  EventModes::GroupImpact impact = group_before(last, seeds, t);
   if (!impact.refusal.empty() || impact.system.joints != nullptr || impact.system.rows.empty()) {
     return false;
   }
@@ -72,10 +78,16 @@ bool EventContacts::end_by_pushing(std::span<const BodyIndex> seeds, double rema
   const ContactSweeps sweeps(impact.system.bodies, touches);
   const auto swept = sweeps.sweep(before, {}, {}, settled * fastest, true);
   run_.cost.contact_solves += swept.solves;
-  const bool some = std::any_of(swept.impulse.begin(), swept.impulse.end(),
-                                [](const Vector3& p) { return !p.isZero(0.0); });
+  double pushed = 0.0;
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    pushed = std::max(pushed, (swept.velocities[k] - before[k]).head<3>().norm());
+  }
+  const bool some = pushed > settled * fastest;
   if (!some || !(swept.changed <= accepted * fastest)) {
     return !some && settle_stalled(seeds, t);
+  }
+  if (last != nullptr) {
+    take_back(*last);
   }
   const std::vector<BodyIndex> free = give(impact, swept.velocities, seeds, t);
   book_pushes(impact, touches, swept, before);
@@ -93,6 +105,49 @@ bool EventContacts::end_by_pushing(std::span<const BodyIndex> seeds, double rema
     modes_.tell(changes, t);
   }
   return true;
+}
+
+/// All that touches the seeds, as it was before the last impact of a collapse: contacts end there,
+/// too, in what they can do by pushing.
+EventModes::GroupImpact EventContacts::group_before(const Event* last,
+                                                    std::span<const BodyIndex> seeds, Instant t) {
+  if (last == nullptr) {
+    return modes_.impact_group(seeds, t, true);
+  }
+  BodyState& a = motions_.now(last->a);
+  BodyState& b = motions_.now(last->b);
+  const std::pair<Twist, Twist> struck{a.twist, b.twist};
+  a.twist = last->before_a.twist;
+  b.twist = last->before_b.twist;
+  EventModes::GroupImpact impact = modes_.impact_group(seeds, t, true);
+  a.twist = struck.first;
+  b.twist = struck.second;
+  return impact;
+}
+
+/// The two of an impact have not struck each other: they are as before, and so are the books.
+void EventContacts::take_back(const Event& impact) {
+  double gained = 0.0;
+  Vector3 push = Vector3::Zero();  // on b
+  for (const auto& [i, before, after, sign] :
+       {std::tuple{impact.a, &impact.before_a, &impact.after_a, -1.0},
+        {impact.b, &impact.before_b, &impact.after_b, 1.0}}) {
+    if (run_.model.is_free(i)) {
+      BodyState& now = motions_.now(i);
+      const BodyState struck = now;
+      now.twist = before->twist;
+      gained += run_.account.gained(i, struck, now);
+      run_.account.struck(i, struck, now);
+      push = sign * run_.model.inertia(i).mass * (after->twist.linear - before->twist.linear);
+    }
+  }
+  const Contact& contact = impact.contact;
+  const double rates = normal_velocity(contact, impact.before_a, impact.before_b) +
+                       normal_velocity(contact, impact.after_a, impact.after_b);
+  const bool rubs = run_.model.friction(impact.a, impact.b) > 0.0;
+  const double along = rubs ? -0.5 * contact.normal.dot(push) * rates : gained;
+  run_.ledger.add(EnergyLine::restitution_loss, along);
+  run_.ledger.add(EnergyLine::impact_friction, gained - along);
 }
 
 /// Gives the bodies of a group other velocities; returns those that are free.

@@ -228,10 +228,14 @@ void EventContacts::touch(BodyIndex a, BodyIndex b, const Contact& contact, Inst
   }
   const std::array<BodyIndex, 2> pair{a, b};
   if (modes_.holds(a) || modes_.holds(b)) {
+    const bool again = accumulation_.stalls(a, b, t, least_progress * run_.epoch());
+    // What the motions press together, and the mode does not, strikes when it has come nearer.
+    if (const double until = again ? comes_together(a, b, t, bracket) : 0.0; until > 0.0) {
+      return run_.agenda.push(t + until, DueKind::impact, a, b);
+    }
     const std::vector<BodyIndex> bodies = modes_.group(pair);
     modes_.bring_group(bodies, t);
     // Asked again and again, it is at a rim: what goes over that turns.
-    const bool again = accumulation_.stalls(a, b, t, least_progress * run_.epoch());
     const bool settled = again ? settle_stalled(bodies, t) : settle(bodies, t, {.unloaded = true});
     return settled ? void() : set_free(bodies, t);
   }

@@ -100,7 +100,11 @@ class EventContacts {
   void hand_on(const Event& first, double approach, std::vector<BodyIndex> bodies, Instant t);
   void go_on_from(std::span<const BodyIndex> bodies, const BodyPair& first, double approach,
                   Instant t);
-  [[nodiscard]] bool end_by_pushing(std::span<const BodyIndex> seeds, double remaining, Instant t);
+  [[nodiscard]] bool end_by_pushing(std::span<const BodyIndex> seeds, double remaining, Instant t,
+                                    const Event* last = nullptr);
+  void take_back(const Event& impact);
+  [[nodiscard]] EventModes::GroupImpact group_before(const Event* last,
+                                                     std::span<const BodyIndex> seeds, Instant t);
   [[nodiscard]] std::vector<BodyIndex> give(const EventModes::GroupImpact& impact,
                                             const std::vector<ContactSweeps::Vector6>& velocities,
                                             std::span<const BodyIndex> seeds, Instant t);

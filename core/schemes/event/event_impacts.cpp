@@ -258,7 +258,11 @@ void EventContacts::go_on_as_found(const Event& event, const EventAccumulation::
     if (finding.kind == Kind::rests && meet_elsewhere(a, b, t)) {
       return;
     }
-    if (end_by_pushing(pair, finding.remaining, t)) {
+    const bool moved =
+        run_.model.mobility(a) == Mobility::driven ||
+        run_.model.mobility(b) == Mobility::driven;  // they worked in the last impact
+    if (end_by_pushing(pair, finding.remaining, t,
+                       unite && !moved && run_.law.info().needs_contact ? &event : nullptr)) {
       return;
     }
   }
@@ -434,6 +438,10 @@ bool EventContacts::still_approaching(const Event& event, double approach, Insta
     scale += after->twist.linear.norm() + spin * arm.norm();
     unfelt +=
         512.0 * epsilon * spin * (arm.lpNorm<1>() + after->pose.position.lpNorm<Eigen::Infinity>());
+  }
+  for (const BodyState* before : {&event.before_a, &event.before_b}) {
+    const Vector3 arm = event.contact.point - before->pose.position;
+    scale += before->twist.linear.norm() + before->twist.angular.norm() * arm.norm();
   }
   // Roundoff of a product and a few sums; with friction, the tolerance to which an impact is
   // integrated; with joints, roundoff of the equations by which they pass it on.

@@ -68,6 +68,12 @@ double EventModes::rest_speed(BodyIndex a, BodyIndex b, const BodyState& at_a,
   const double tolerance = accumulation_.rest_tolerance(a, b, run_.model.restitution(a, b));
   double pressing = load(a, at_a).linear.norm() + load(b, at_b).linear.norm();
   double speeds = at_a.twist.linear.norm() + at_b.twist.linear.norm();
+  for (const auto& [i, state] : {std::pair{a, &at_a}, std::pair{b, &at_b}}) {
+    const double turns = state->twist.angular.squaredNorm();
+    if (!hangs(i) && turns > 0.0 && !std::holds_alternative<Sphere>(run_.model.shape(i))) {
+      pressing += turns * finite_radius(run_.model.shape(i));  // corners go round
+    }
+  }
   if (hangs(a) || hangs(b)) {
     // Joints and springs press, too, and pass on what is roundoff of the fastest; as where hops are
     // judged.
