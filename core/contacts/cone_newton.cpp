@@ -24,6 +24,8 @@ constexpr double first_compliance = 0.1;
 constexpr double shrink = 0.3;
 constexpr double solved = 1e-2;
 constexpr int most_rounds = 30;
+/// So many that Newton's method does not solve get nowhere.
+constexpr int most_unsolved = 3;
 /// Newton's method alone pays with so many touches at most.
 constexpr std::size_t few_touches = 32;
 constexpr double nearly_rough = 100.0;
@@ -184,13 +186,15 @@ ConeImpulses cone_proximal(const ConeProblem& problem, const VectorXd& begin, do
   VectorXd p = VectorXd::Zero(begin.size());
   double here = off(p);
   double compliance = first_compliance * scale;
-  for (int round = 0; round < most_rounds && nearest.off > settled; ++round) {
+  for (int round = 0, unsolved = 0;
+       round < most_rounds && unsolved < most_unsolved && nearest.off > settled; ++round) {
     ConeProblem with = problem;
     with.W.diagonal().array() += compliance;
     with.q -= compliance * p;
     const ConeImpulses found = cone_newton(with, p, 0.1 * settled);
     if (!(found.off <= solved * here)) {
       compliance *= 4.0;
+      ++unsolved;
       continue;
     }
     p = found.impulse;

@@ -39,7 +39,7 @@ struct ConeImpulses {
                                          double settled);
 
 /// More touches than these are not looked at all at once.
-constexpr std::size_t most_at_once = 96;
+constexpr std::size_t most_at_once = 64;
 /// For the attempts at one problem, from 0 on, each worth more work than the one before: Newton's
 /// method, where touches are few; the proximal points; these with friction of 100 where touches are
 /// rough, as what is hardly pressed and has no bound may be held by nothing at all.

@@ -113,7 +113,6 @@ class Jams {
     Jam found{before_, std::vector<char>(n, 0)};
     std::vector<Vector3> impulse(n, Vector3::Zero());
     int at_once = n <= most_at_once ? at_once_after : most_sweeps;
-    int attempt = 0;
     for (int round = 0; round < most_sweeps; ++round) {
       double changed = 0.0;
       for (std::size_t k = 0; k < n; ++k) {
@@ -131,7 +130,7 @@ class Jams {
         bool found_at_once = false;
         if (round == at_once) {
           at_once *= 4;
-          found_at_once = settle_at_once(more, attempt++, impulse, found.velocities);
+          found_at_once = settle_at_once(more, impulse, found.velocities);
         }
         if (!found_at_once) {
           continue;
@@ -161,8 +160,7 @@ class Jams {
   }
 
   /// Goes to the nearest that is found at all touches at once from here on; whether it is it.
-  bool settle_at_once(double more, int attempt, std::vector<Vector3>& impulse,
-                      std::vector<Twist>& v) const {
+  bool settle_at_once(double more, std::vector<Vector3>& impulse, std::vector<Twist>& v) const {
     const std::size_t n = now_.size();
     const auto size = static_cast<Eigen::Index>(3 * n);
     ContactSystem all{state_.bodies, {}, state_.joints};
@@ -179,7 +177,7 @@ class Jams {
       begin.segment<3>(at) = impulse[k];
     }
     problem.W = all.coupling();
-    const ConeImpulses found = cone_at_once(problem, begin, settled * fastest_, attempt);
+    const ConeImpulses found = cone_at_once(problem, begin, settled * fastest_, 0);
     v = before_;
     for (std::size_t k = 0; k < n; ++k) {
       impulse[k] = found.impulse.segment<3>(static_cast<Eigen::Index>(3 * k));
