@@ -26,8 +26,7 @@ constexpr double solved = 1e-2;
 constexpr int most_rounds = 30;
 /// So many that Newton's method does not solve get nowhere.
 constexpr int most_unsolved = 3;
-/// Newton's method alone pays with so many touches at most.
-constexpr std::size_t few_touches = 32;
+/// See `cone_at_once`.
 constexpr double nearly_rough = 100.0;
 
 /// What impulses are off: zero where all is kept, m/s by touch, and how it changes with them.
@@ -211,7 +210,7 @@ ConeImpulses cone_proximal(const ConeProblem& problem, const VectorXd& begin, do
 
 ConeImpulses cone_at_once(const ConeProblem& problem, const VectorXd& begin, double settled,
                           int attempt) {
-  if (attempt == 0 && problem.friction.size() <= few_touches) {
+  if (attempt == 0 && problem.friction.size() <= most_for_newton) {
     return cone_newton(problem, begin, settled);
   }
   if (attempt == 1) {

@@ -38,7 +38,8 @@ struct ConeImpulses {
 [[nodiscard]] ConeImpulses cone_proximal(const ConeProblem& problem, const Eigen::VectorXd& begin,
                                          double settled);
 
-/// More touches than these are not looked at all at once.
+/// Newton's method alone pays with so many touches at most, and any of this with so many.
+constexpr std::size_t most_for_newton = 32;
 constexpr std::size_t most_at_once = 64;
 /// For the attempts at one problem, from 0 on, each worth more work than the one before: Newton's
 /// method, where touches are few; the proximal points; these with friction of 100 where touches are

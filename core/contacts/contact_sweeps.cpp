@@ -20,7 +20,7 @@ constexpr int damped_from = 1000;
 constexpr double nearly_settled = 1e4;
 constexpr int idle_sweeps = 64;
 /// What has not settled after so many sweeps, and after four times as many again and again, is
-/// looked for at all touches at once, see `at_once`.
+/// looked for at all touches at once; in steps, which come often, by Newton's method only.
 constexpr int at_once_after = 64;
 
 }  // namespace
@@ -63,7 +63,9 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
   }
   double least = nearly_settled * settled;
   int idle = 0;
-  int at_once = blocks_.size() <= most_at_once ? at_once_after : most_sweeps;
+  const bool in_step = !rates.empty();
+  int at_once =
+      blocks_.size() <= (in_step ? most_for_newton : most_at_once) ? at_once_after : most_sweeps;
   int attempt = 0;
   for (int round = 0; round < most_sweeps; ++round) {
     swept.changed = 0.0;
@@ -94,7 +96,7 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
       at_once *= 4;
       const double off =
           settle_at_once(velocities, rates, settled, rubs, attempt, along, swept.velocities);
-      attempt += rates.empty() ? 1 : 0;  // steps come too often for more work than the first
+      attempt += in_step ? 0 : 1;
       if (off <= settled) {
         swept.changed = off;
         break;

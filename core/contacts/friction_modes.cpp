@@ -368,15 +368,14 @@ FlatMode mode_with_friction(const ContactGroup& group, const FlatModeOptions& op
   return smooth;
 }
 
-/// Whether all points of a patch are at rest along its normal.
-bool rests(const ContactGroup& group, const GroupPatch& patch) {
+/// Of the points of a patch, along its normal, m/s.
+double fastest_rate(const ContactGroup& group, const GroupPatch& patch) {
+  double fastest = 0.0;
   for (std::size_t k = 0; k < patch.manifold.size; ++k) {
     const Vector3 v = slip_at(group, patch, patch.manifold.points[k].position);
-    if (std::abs(patch.manifold.normal.dot(v)) > patch.rest_speed) {
-      return false;
-    }
+    fastest = std::max(fastest, std::abs(patch.manifold.normal.dot(v)));
   }
-  return patch.manifold.size > 0;
+  return fastest;
 }
 
 /// Whether friction stops all points of a patch on a way as short as the hops that count as rest:
@@ -438,7 +437,8 @@ std::vector<Twist> held_still(const ContactGroup& group, const std::vector<char>
 FlatMode laid_still(const ContactGroup& group, const FlatModeOptions& options, FlatMode refused) {
   std::vector<char> held;
   for (const GroupPatch& patch : group.patches) {
-    held.push_back(rests(group, patch) ? 1 : 0);
+    const bool rests = patch.manifold.size > 0 && fastest_rate(group, patch) <= patch.rest_speed;
+    held.push_back(rests ? 1 : 0);
   }
   while (std::any_of(held.begin(), held.end(), [](char h) { return h != 0; })) {
     ContactGroup still = group;
@@ -457,11 +457,7 @@ FlatMode laid_still(const ContactGroup& group, const FlatModeOptions& options, F
     }
     if (!fewer) {
       for (std::size_t p = 0; p < held.size(); ++p) {
-        for (std::size_t k = 0; k < group.patches[p].manifold.size; ++k) {
-          const GroupPatch& patch = group.patches[p];
-          const Vector3 v = slip_at(group, patch, patch.manifold.points[k].position);
-          mode.rate[p] = std::max(mode.rate[p], std::abs(patch.manifold.normal.dot(v)));
-        }
+        mode.rate[p] = std::max(mode.rate[p], fastest_rate(group, group.patches[p]));
       }
       return mode;
     }

@@ -17,7 +17,7 @@ namespace {
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int most_sweeps = 20'000;
 /// What has not settled after so many sweeps, and after four times as many again and again, is
-/// looked for at all touches at once, see `at_once`.
+/// looked for at all touches at once, if there are not too many.
 constexpr int at_once_after = 64;
 /// Sweeps have settled that change velocities by less than this part of the fastest.
 constexpr double settled = 1e-14;
@@ -112,7 +112,7 @@ class Jams {
     const std::size_t n = now_.size();
     Jam found{before_, std::vector<char>(n, 0)};
     std::vector<Vector3> impulse(n, Vector3::Zero());
-    int at_once = n <= most_at_once ? at_once_after : most_sweeps;
+    int at_once = n <= most_for_newton ? at_once_after : most_sweeps;
     for (int round = 0; round < most_sweeps; ++round) {
       double changed = 0.0;
       for (std::size_t k = 0; k < n; ++k) {
@@ -126,15 +126,13 @@ class Jams {
         changed = std::max(changed, (W * (now - impulse[k])).norm());
         impulse[k] = now;
       }
-      if (!(changed <= settled * fastest_)) {
-        bool found_at_once = false;
-        if (round == at_once) {
-          at_once *= 4;
-          found_at_once = settle_at_once(more, impulse, found.velocities);
-        }
-        if (!found_at_once) {
-          continue;
-        }
+      bool ends = changed <= settled * fastest_;
+      if (!ends && round == at_once) {
+        at_once *= 4;
+        ends = settle_at_once(more, impulse, found.velocities);
+      }
+      if (!ends) {
+        continue;
       }
       bool any = false;
       for (std::size_t k = 0; k < n; ++k) {
@@ -177,7 +175,7 @@ class Jams {
       begin.segment<3>(at) = impulse[k];
     }
     problem.W = all.coupling();
-    const ConeImpulses found = cone_at_once(problem, begin, settled * fastest_, 0);
+    const ConeImpulses found = cone_newton(problem, begin, settled * fastest_);
     v = before_;
     for (std::size_t k = 0; k < n; ++k) {
       impulse[k] = found.impulse.segment<3>(static_cast<Eigen::Index>(3 * k));

@@ -158,9 +158,9 @@ void SceneWatch::check_joints(std::span<const BodyState> bodies, Instant t) cons
 
 void SceneWatch::check_impacts() {
   for (const Event& event : at_once_) {
+    // With friction restitution is one of work, not of velocities; what jams sticks.
     if (event.contact.friction > 0.0 || event.flag == EventFlag::painleve) {
-      continue;  // restitution is then one of work, not of velocities, or has no say: what jams
-                 // sticks
+      continue;
     }
     const double e = model_->restitution(event.a, event.b);
     if (const std::string broken = broken_restitution(event, e, handed_on(event));

@@ -46,7 +46,8 @@ std::vector<SweptTouch> touches_of(const EventModes::GroupImpact& impact, const 
 /// impacts would have divided what is left is not known: it is less than what they still hop. What
 /// took an impulse has been in contact, and is told so. Where nothing is left to push, what is in
 /// touch is settled. False, and nothing has changed, where neither is possible, or it was done too
-/// often.
+/// often. `last`: the impact that led here, which was told; after some pushes in a frame it is
+/// taken back.
 bool EventContacts::end_by_pushing(std::span<const BodyIndex> seeds, double remaining, Instant t,
                                    const Event* last) {
   const double frame = std::floor(t.seconds / run_.mean_frame);
@@ -55,9 +56,7 @@ bool EventContacts::end_by_pushing(std::span<const BodyIndex> seeds, double rema
   if (pushed_ > most_pushes) {
     return false;
   }
-  if (pushed_ <= few_pushes) {
-    last = nullptr;
-  }
+  last = pushed_ > few_pushes ? last : nullptr;
   EventModes::GroupImpact impact = group_before(last, seeds, t);
   if (!impact.refusal.empty() || impact.system.joints != nullptr || impact.system.rows.empty()) {
     return false;

@@ -258,11 +258,11 @@ void EventContacts::go_on_as_found(const Event& event, const EventAccumulation::
     if (finding.kind == Kind::rests && meet_elsewhere(a, b, t)) {
       return;
     }
-    const bool moved =
-        run_.model.mobility(a) == Mobility::driven ||
-        run_.model.mobility(b) == Mobility::driven;  // they worked in the last impact
-    if (end_by_pushing(pair, finding.remaining, t,
-                       unite && !moved && run_.law.info().needs_contact ? &event : nullptr)) {
+    // What a driven body gave, or a law that takes no contact, is not taken back.
+    const bool known = run_.law.info().needs_contact &&
+                       run_.model.mobility(a) != Mobility::driven &&
+                       run_.model.mobility(b) != Mobility::driven;
+    if (end_by_pushing(pair, finding.remaining, t, unite && known ? &event : nullptr)) {
       return;
     }
   }
@@ -432,16 +432,14 @@ bool EventContacts::still_approaching(const Event& event, double approach, Insta
   const double rebound = normal_velocity(event.contact, event.after_a, event.after_b);
   double scale = std::abs(approach);
   double unfelt = 0.0;  // levers that coordinates cannot tell from none turn nothing
-  for (const BodyState* after : {&event.after_a, &event.after_b}) {
+  for (const auto& [before, after] :
+       {std::pair{&event.before_a, &event.after_a}, {&event.before_b, &event.after_b}}) {
     const Vector3 arm = event.contact.point - after->pose.position;
     const double spin = after->twist.angular.norm();
-    scale += after->twist.linear.norm() + spin * arm.norm();
+    scale += after->twist.linear.norm() + before->twist.linear.norm() +
+             (spin + before->twist.angular.norm()) * arm.norm();
     unfelt +=
         512.0 * epsilon * spin * (arm.lpNorm<1>() + after->pose.position.lpNorm<Eigen::Infinity>());
-  }
-  for (const BodyState* before : {&event.before_a, &event.before_b}) {
-    const Vector3 arm = event.contact.point - before->pose.position;
-    scale += before->twist.linear.norm() + before->twist.angular.norm() * arm.norm();
   }
   // Roundoff of a product and a few sums; with friction, the tolerance to which an impact is
   // integrated; with joints, roundoff of the equations by which they pass it on.
