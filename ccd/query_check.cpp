@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -12,6 +13,7 @@ namespace {
 
 constexpr double normal_tolerance = 1e-14;  // roundings of who made it unit, and of the square
 constexpr double time_tolerance = 1e-12;
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double sum_rounding = 1e-12;  // of a sum that others make in another order
 
 [[noreturn]] void refuse(const char* body, const std::string& what) {
@@ -96,7 +98,10 @@ void check_motion(const char* body, const Motion& motion, const Window& window) 
   check_rotation(body, motion);
   const double s0 = window.start - motion.start;
   const double s1 = s0 + window.duration;
-  const double slack = time_tolerance * (std::abs(s0) + (std::isfinite(s1) ? s1 : 0.0));
+  // Instants are told to their two doubles' last bit, which may be much of a short motion.
+  const double instants =
+      4.0 * epsilon * epsilon * (std::abs(window.start.seconds) + std::abs(motion.start.seconds));
+  const double slack = time_tolerance * (std::abs(s0) + (std::isfinite(s1) ? s1 : 0.0)) + instants;
   if (!(s0 >= -slack) || !(s1 <= motion.duration + slack)) {
     refuse(body, fmt::format("the window is from {} to {} s of a motion that lasts {} s; allowed: "
                              "within the motion",

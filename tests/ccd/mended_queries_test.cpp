@@ -266,3 +266,20 @@ TEST_CASE("mended: boxes that meet edge to edge, or flat and turning, touch wher
     CHECK(on_surface(b, motion_b, toi.witness_b));
   }
 }
+
+TEST_CASE("mended: a window ends with its motion, as well as instants tell", "[ccd][mended]") {
+  // A pyramid under the law garwin came to motions of 5e-24 s; at 1 s an instant resolves 1e-32 s.
+  constexpr double lasts = 5e-24;
+  const Instant start{1.0, 0.0};
+  const Shape ball = Sphere{1.0};
+  const auto asked = [&](double until) {
+    Motion a = still(pose(zero));
+    Motion b = moving(pose({0, 3, 0}), {0, -2, 0});
+    a.start = b.start = start;
+    a.duration = b.duration = lasts;
+    const double from = 3e-24;
+    return certified->time_of_impact({ball, a}, {ball, b}, {start + from, until - from}, 0.0);
+  };
+  CHECK(asked(lasts + 1e-32).status == ToiStatus::separated);
+  CHECK_THROWS_AS(asked(lasts + 1e-28), std::invalid_argument);
+}
