@@ -43,6 +43,12 @@ Vector4 correction(const Vector4& from, const Quaternion& to) {
   return (from.dot(target) < 0.0 ? -length : length) * target - from;
 }
 
+/// How fast a quaternion of any length changes that turns at this rate, rad/s, world frame.
+Vector4 turning(const Vector3& rate, const Vector4& q) {
+  const Quaternion half(0.0, 0.5 * rate.x(), 0.5 * rate.y(), 0.5 * rate.z());
+  return as_vector(half * Quaternion(q[0], q[1], q[2], q[3]));
+}
+
 Vector3 rotation_between(const Quaternion& from, const Quaternion& to) {
   Quaternion turn = to * from.conjugate();
   if (turn.w() < 0.0) {
@@ -72,9 +78,12 @@ void bend_to(Motion& motion, double h, const BodyState& before, const BodyState&
     motion.rotation_rate = rotation_between(before.pose.orientation, after.pose.orientation) / h;
     return;
   }
-  const Vector4 none = Vector4::Zero();
-  bend<4>(motion.quaternion, h, correction(motion.quaternion[0], before.pose.orientation), none,
-          correction(motion.quaternion(h), after.pose.orientation), none);
+  const Vector4 d0 = correction(motion.quaternion[0], before.pose.orientation);
+  const Vector4 d1 = correction(motion.quaternion(h), after.pose.orientation);
+  const Vector4 r0 = turning(before.twist.angular, motion.quaternion[0] + d0);
+  const Vector4 r1 = turning(after.twist.angular, motion.quaternion(h) + d1);
+  bend<4>(motion.quaternion, h, d0, r0 - motion.quaternion.derivative(0.0), d1,
+          r1 - motion.quaternion.derivative(h));
 }
 
 }  // namespace core

@@ -1,6 +1,7 @@
 // Motion: what it says at an instant, and that its bounds hold.
 #include "core/motion.hpp"
 
+#include "core/bent_motion.hpp"
 #include "tests/catch.hpp"
 
 #include <cmath>
@@ -45,6 +46,14 @@ Motion random_motion(std::uint64_t seed, int degree) {
 
 double angle_between(const Quaternion& p, const Quaternion& q) {
   return 2.0 * std::atan2((p.conjugate() * q).vec().norm(), std::abs((p.conjugate() * q).w()));
+}
+
+/// The rate at which a motion turns, of its quaternions: w = 2 q' q* / |q|^2.
+Vector3 turns_at(const Motion& motion, double s) {
+  const auto quaternion = [](const Vector4& q) { return Quaternion(q[0], q[1], q[2], q[3]); };
+  const Vector4 q = motion.quaternion(s);
+  return 2.0 * (quaternion(motion.quaternion.derivative(s)) * quaternion(q).conjugate()).vec() /
+         q.squaredNorm();
 }
 
 }  // namespace
@@ -165,4 +174,34 @@ TEST_CASE("rotate turns by the rotation vector in the world", "[core][pose]") {
   CHECK((then * Vector3::UnitX() - Vector3::UnitZ()).norm() < 1e-15);
   CHECK(rotate(Vector3::Zero(), q).coeffs() == q.coeffs());
   CHECK(rotate({1e-200, 0, 0}, Quaternion::Identity()).x() == 0.5e-200);
+}
+
+TEST_CASE("a bent motion begins and ends at the states, and changes there as they say",
+          "[core][motion]") {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    CAPTURE(seed);
+    constexpr double h = 0.7;
+    Motion motion = random_motion(seed, 4);
+    Random random(seed + 100);
+    const auto near = [&](double s) {
+      const auto off = [&] { return Vector3(0.1 * Vector3(random(), random(), random())); };
+      const Pose pose = motion.pose(s);
+      const Twist twist = motion.twist(s);
+      return BodyState{{pose.position + off(), rotate(off(), pose.orientation)},
+                       {twist.linear + off(), twist.angular + off()}};
+    };
+    const BodyState before = near(0.0);
+    const BodyState after = near(h);
+    bend_to(motion, h, before, after);
+    for (const auto& [s, state] : {std::pair{0.0, before}, {h, after}}) {
+      // A few roundoffs of polynomials whose coefficients are at most 100.
+      constexpr double rounded = 1e-13;
+      CHECK((motion.pose(s).position - state.pose.position).norm() <= rounded);
+      CHECK(angle_between(motion.pose(s).orientation, state.pose.orientation) <= rounded);
+      CHECK((motion.position.derivative(s) - state.twist.linear).norm() <= rounded);
+      CHECK((turns_at(motion, s) - state.twist.angular).norm() <= rounded);
+      CHECK((motion.twist(s).linear - state.twist.linear).norm() <= rounded);
+      CHECK((motion.twist(s).angular - state.twist.angular).norm() <= rounded);
+    }
+  }
 }
