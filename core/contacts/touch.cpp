@@ -334,6 +334,23 @@ TouchNow look_at_bodies(const Touch& touch, const BodyState& state_a, const Body
   return touch.on_b.kind == Kind::line ? turned_round(ball_on_line(b, a)) : ball_on_ball(a, b);
 }
 
+/// Whether a shape is a box or a hull without rounding.
+bool is_polytope(const Shape& shape) {
+  const auto c = polytope_corners(shape);
+  return c && !(c->rounding > 0.0);
+}
+
+/// Whether two corners, two edges, or a corner and an edge tell the normal with which they touch:
+/// two vertices do not, nor a vertex and an edge, nor edges that are parallel.
+bool has_normal(const Touch& touch, const Pose& a, const Pose& b) {
+  if (touch.on_a.kind == Kind::line && touch.on_b.kind == Kind::line) {
+    return (a.orientation * touch.on_a.direction)
+               .cross(b.orientation * touch.on_b.direction)
+               .norm() >= 1e-6;
+  }
+  return touch.on_a.radius + touch.on_b.radius > 0.0;
+}
+
 }  // namespace
 
 TouchNow look_at(const Touch& touch, const BodyState& state_a, const BodyState& state_b) {
@@ -483,25 +500,19 @@ std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point
   }
   const auto edge_a = line_feature(shape_a, on_a, n_A);
   const auto edge_b = line_feature(shape_b, on_b, n_B);
-  if (!(corner_a || edge_a) || !(corner_b || edge_b)) {
-    return std::nullopt;
-  }
-  touch.on_a = corner_a ? *corner_a : *edge_a;
-  touch.on_b = corner_b ? *corner_b : *edge_b;
-  if (corner_a && corner_b && corner_a->radius + corner_b->radius == 0.0) {
-    return std::nullopt;  // two vertices have no normal
-  }
-  if (!corner_a && !corner_b) {
-    const Vector3 cross =
-        (a.orientation * edge_a->direction).cross(b.orientation * edge_b->direction);
-    if (cross.norm() < 1e-6) {
-      return std::nullopt;
+  if ((corner_a || edge_a) && (corner_b || edge_b)) {
+    touch.on_a = corner_a ? *corner_a : *edge_a;
+    touch.on_b = corner_b ? *corner_b : *edge_b;
+    if (has_normal(touch, a, b)) {
+      return touch;
     }
   }
-  if ((corner_a && !corner_b && corner_a->radius == 0.0) ||
-      (corner_b && !corner_a && corner_b->radius == 0.0)) {
-    return std::nullopt;  // neither have a vertex and an edge
+  if (!is_polytope(shape_a) || !is_polytope(shape_b)) {
+    return std::nullopt;
   }
+  // The place is held until the next look, at the plane that separates them.
+  touch.on_a = {Kind::plane, on_a, n_A, 0.0};
+  touch.on_b = {Kind::ball, on_b, Vector3::Zero(), 0.0};
   return touch;
 }
 

@@ -74,8 +74,9 @@ struct TouchNow {
 [[nodiscard]] TouchFeature face_feature(const Shape& shape, const Vector3& x,
                                         const Vector3& outward);
 
-/// The features of two bodies that touch at a point of their manifold; nullopt where they are none
-/// of those that a `Touch` knows.
+/// The features of two bodies that touch at a point of their manifold. Two vertices, or a vertex
+/// and an edge, have no normal of their own: of polytopes the place is held at the plane that
+/// separates them. nullopt where there are none of those that a `Touch` knows.
 [[nodiscard]] std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point,
                                             const Shape& shape_a, const Pose& a,
                                             const Shape& shape_b, const Pose& b);

@@ -168,6 +168,12 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double bracket, 
   if (const double past = moved ? 0.0 : passes_by(a, b, t); past > 0.0) {
     return run_.agenda.push(t + past, DueKind::recheck, a, b);
   }
+  if (decided && event.contact.gap > predictor_.touching_gap(a, b)) {
+    // The step ended where no plane told that they are apart. The detector does.
+    const std::vector<BodyIndex> bodies = modes_.group(pair);
+    modes_.bring_group(bodies, t);
+    return settle(bodies, t, {.may_turn = true}) ? void() : set_free(bodies, t);
+  }
   if (run_.detector.info().proves && event.contact.gap > predictor_.touching_gap(a, b)) {
     return run_.stop(t,
                      fmt::format("undecided: the detector '{}' reports that {} touch, which are {} "
