@@ -6,6 +6,7 @@
 #include "core/schemes/event/event_modes.hpp"
 #include "core/schemes/event/gathered_group.hpp"
 #include "core/schemes/event/mode_guards.hpp"
+#include "core/schemes/event/turning_group.hpp"
 
 #include <algorithm>
 #include <array>
@@ -62,10 +63,21 @@ Twist EventModes::load(BodyIndex i, const BodyState& state) const {
   return load;
 }
 
-/// Below this speed along the normal the forces that press allow no hop above the tolerance, m/s.
+/// Whether a body has taken very many steps in this frame.
+bool EventModes::rattles(BodyIndex i) const {
+  return has_turned_[i].steps >= TurningLimits::many_steps &&
+         has_turned_[i].frame == std::floor(run_.time.seconds / run_.mean_frame);
+}
+
+/// Below this speed along the normal the forces that press allow no hop above the tolerance, m/s:
+/// of what rattles, above half of what counts as touch.
 double EventModes::rest_speed(BodyIndex a, BodyIndex b, const BodyState& at_a,
                               const BodyState& at_b, const SettleOptions& options) const {
-  const double tolerance = accumulation_.rest_tolerance(a, b, run_.model.restitution(a, b));
+  const double e = run_.model.restitution(a, b);
+  double tolerance = accumulation_.rest_tolerance(a, b, e);
+  if (e < 1.0 && (rattles(a) || rattles(b))) {
+    tolerance = std::max(tolerance, 0.5 * predictor_.touching_gap(a, b));
+  }
   double pressing = load(a, at_a).linear.norm() + load(b, at_b).linear.norm();
   double speeds = at_a.twist.linear.norm() + at_b.twist.linear.norm();
   for (const auto& [i, state] : {std::pair{a, &at_a}, std::pair{b, &at_b}}) {

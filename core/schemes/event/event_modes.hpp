@@ -145,6 +145,7 @@ class EventModes {
   void go_on_hanging(const Gathered& found, std::size_t k, Instant t, const Turning* turning);
   [[nodiscard]] Gathered gather(std::span<const BodyIndex> seeds, Instant t,
                                 const SettleOptions& options);
+  [[nodiscard]] bool rattles(BodyIndex i) const;
   [[nodiscard]] double rest_speed(BodyIndex a, BodyIndex b, const BodyState& at_a,
                                   const BodyState& at_b, const SettleOptions& options) const;
   [[nodiscard]] std::optional<Approach> approach(BodyIndex a, BodyIndex b, bool corners_too) const;

@@ -25,8 +25,6 @@ constexpr double rough = 1e8;
 constexpr double short_step = 1e-4;
 /// Steps are not shortened below this part of a frame to end where bodies still touch.
 constexpr double least_in_touch = 1e-9;
-/// A body that turns has so many steps in a frame at most.
-constexpr int most_steps = 4000;
 
 std::vector<BodyState> free_states(const TurningGroup& group) {
   std::vector<BodyState> states;
@@ -247,9 +245,9 @@ std::string EventModes::why_not_turn(const Gathered& found, Instant t) const {
   }
   const double frame = std::floor(t.seconds / run_.mean_frame);
   for (const BodyIndex i : found.bodies) {
-    if (has_turned_[i].frame == frame && has_turned_[i].steps >= most_steps) {
+    if (has_turned_[i].frame == frame && has_turned_[i].steps >= TurningLimits::most_steps) {
       return fmt::format("'{}', which turns, takes more than {} steps in a frame",
-                         run_.model.body(i).name, most_steps);
+                         run_.model.body(i).name, TurningLimits::most_steps);
     }
   }
   return {};
