@@ -617,7 +617,7 @@ TEST_CASE("turning: a tilted box with large friction lands, jams, and comes to r
 }
 
 // Two boxes tumble onto a floor with a friction of 2. Whether one comes to Painleve's case depends
-// on the last digit of where it was: of these six five do, and half of them are enough.
+// on the last digit of where it was: half of these six are enough.
 TEST_CASE("turning: an impulse in Painleve's case is told as such, and gives nothing",
           "[turning]") {
   const auto cube = [](const std::string& name, const Vector3& p, const std::string& axis_angle,

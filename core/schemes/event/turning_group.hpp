@@ -16,9 +16,9 @@ struct TurningLimits {
   /// Forces at an instant are looked for of so many free bodies that turn: of more they are found
   /// too slowly.
   static constexpr std::ptrdiff_t most_bodies = 24;
-  /// A body that turns has so many steps in a frame at most, and after so many its hops count as
-  /// rest below half of what counts as touch.
+  /// A body that turns has so many steps in a frame at most.
   static constexpr int most_steps = 3000;
+  /// After so many its hops count as rest below half of what counts as touch.
   static constexpr int many_steps = 1000;
 };
 
