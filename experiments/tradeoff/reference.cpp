@@ -52,23 +52,42 @@ Places places_of(const Model& model, double duration, ProgressBar& bar) {
   return places;
 }
 
-/// When a small displacement of one body has grown ten thousandfold, s; nullopt: it does not.
-/// Growth by geometry alone (a ball flies on at another angle) is linear in time and far less.
-std::optional<double> time_of_growth(const Model& model, double duration, ProgressBar& bar) {
-  constexpr double growth = 1e4;
-  Scene scene = model.scene();
-  double shift = 0.0;
-  for (BodyIndex i = 0; i < model.size() && shift == 0.0; ++i) {
-    if (model.is_free(i)) {
-      shift = 1e-10 * smallest_extent(model.shape(i));
-      scene.bodies[i].initial.pose.position += shift * Vector3(0.48, 0.6, 0.64);
+/// A run with a free body a little, `shift`, beside where it begins; nullopt: wherever it is moved
+/// to, the scene is refused, since it touches something there.
+struct Moved {
+  Places places;
+  double shift;  ///< m
+};
+std::optional<Moved> moved_a_little(const Model& model, double duration, ProgressBar& bar) {
+  for (BodyIndex i = 0; i < model.size(); ++i) {
+    if (!model.is_free(i)) {
+      continue;
+    }
+    const double shift = 1e-10 * smallest_extent(model.shape(i));
+    for (const double side : {1.0, -1.0}) {
+      Scene scene = model.scene();
+      scene.bodies[i].initial.pose.position += side * shift * Vector3(0.48, 0.6, 0.64);
+      try {
+        return Moved{places_of(Model(scene), duration, bar), shift};
+      } catch (const InputError&) {
+        // It is inside another body now: of a stack only the last can be moved, upwards.
+      }
     }
   }
+  return std::nullopt;
+}
+
+/// When a small displacement of one body has grown ten thousandfold, s; nullopt: it does not, or
+/// none can be displaced. Growth by geometry alone (a ball flies on at another angle) is linear in
+/// time and far less.
+std::optional<double> time_of_growth(const Model& model, double duration, ProgressBar& bar) {
+  constexpr double growth = 1e4;
   const Places plain = places_of(model, duration, bar);
-  const Places moved = places_of(Model(scene), duration, bar);
-  const std::size_t n = std::min(plain.positions.size(), moved.positions.size());
+  const auto moved = moved_a_little(model, duration, bar);
+  const std::size_t n =
+      moved ? std::min(plain.positions.size(), moved->places.positions.size()) : 0;
   for (std::size_t k = 0; k < n; ++k) {
-    if ((plain.positions[k] - moved.positions[k]).norm() > growth * shift) {
+    if ((plain.positions[k] - moved->places.positions[k]).norm() > growth * moved->shift) {
       return plain.times[k / model.size()];
     }
   }
