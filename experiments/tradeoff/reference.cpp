@@ -52,12 +52,14 @@ Places places_of(const Model& model, double duration, ProgressBar& bar) {
   return places;
 }
 
-/// A run with a free body a little, `shift`, beside where it begins; nullopt: wherever it is moved
-/// to, the scene is refused, since it touches something there.
+/// Frames of a run with one body a little beside where it begins.
 struct Moved {
   Places places;
-  double shift;  ///< m
+  double shift;  ///< m, of that body
 };
+
+/// Moves the first free body that has room on one of two sides; nullopt: none has, as in a scene
+/// where all touch on both.
 std::optional<Moved> moved_a_little(const Model& model, double duration, ProgressBar& bar) {
   for (BodyIndex i = 0; i < model.size(); ++i) {
     if (!model.is_free(i)) {
@@ -70,7 +72,7 @@ std::optional<Moved> moved_a_little(const Model& model, double duration, Progres
       try {
         return Moved{places_of(Model(scene), duration, bar), shift};
       } catch (const InputError&) {
-        // It is inside another body now: of a stack only the last can be moved, upwards.
+        // It would begin inside another body: of a stack only the last can be moved, upwards.
       }
     }
   }

@@ -223,6 +223,16 @@ TEST_CASE("tradeoff: what ends beyond all that moves has diverged, and is on no 
   CHECK(diverged > 0);
 }
 
+TEST_CASE(
+    "tradeoff: a scene of bodies in touch is compared with, too: one of them has room to be moved",
+    "[tradeoff]") {
+  const Model model(read_scene(find_scene("stack")));
+  constexpr double duration = 0.1;  // s
+  const Reference reference = find_reference(model, duration);
+  CHECK(reference.until == duration);
+  CHECK(reference.lyapunov == 0.0);  // what is at rest stays beside itself
+}
+
 TEST_CASE("tradeoff: the scenes of the experiment tell frames of h/4 and h/16 apart",
           "[tradeoff]") {
   const ExperimentSpec spec = read_experiment(find_experiment("tradeoff"), Size::quick);
