@@ -26,7 +26,7 @@ constexpr double solved = 1e-2;
 constexpr int most_rounds = 30;
 /// So many that Newton's method does not solve get nowhere.
 constexpr int most_unsolved = 3;
-/// See `cone_at_once`.
+/// See `AtOnce::bounded`.
 constexpr double nearly_rough = 100.0;
 
 /// What impulses are off: zero where all is kept, m/s by touch, and how it changes with them.
@@ -145,7 +145,7 @@ class Projections {
       // Friction without a bound holds what would approach without it.
       const Eigen::Index at = place(k);
       const bool presses = u[0] - of_.W.block<1, 3>(at, at).dot(p) < 0.0;
-      return std::isinf(mu) && presses ? Does::holds_along : Does::opens;
+      return std::isinf(mu) && (of_.holds_along || presses) ? Does::holds_along : Does::opens;
     }
     return std::isinf(mu) || z.tail<2>().norm() <= mu * z[0] ? Does::sticks : Does::slides;
   }
@@ -209,18 +209,25 @@ ConeImpulses cone_proximal(const ConeProblem& problem, const VectorXd& begin, do
 }
 
 ConeImpulses cone_at_once(const ConeProblem& problem, const VectorXd& begin, double settled,
-                          int attempt) {
-  if (attempt == 0 && problem.friction.size() <= most_for_newton) {
+                          AtOnce way) {
+  const auto is_rough = [](double mu) { return std::isinf(mu); };
+  const bool rough = std::any_of(problem.friction.begin(), problem.friction.end(), is_rough);
+  if (way == AtOnce::newton && problem.friction.size() <= most_for_newton) {
     return cone_newton(problem, begin, settled);
   }
-  if (attempt == 1) {
+  if (way == AtOnce::proximal) {
     return cone_proximal(problem, begin, settled);
   }
-  const auto is_rough = [](double mu) { return std::isinf(mu); };
-  if (attempt == 2 && std::any_of(problem.friction.begin(), problem.friction.end(), is_rough)) {
+  if (way == AtOnce::bounded && rough) {
     ConeProblem bounded = problem;
     std::replace_if(bounded.friction.begin(), bounded.friction.end(), is_rough, nearly_rough);
     return cone_proximal(bounded, begin, settled);
+  }
+  if (way == AtOnce::held_along && rough) {
+    ConeProblem held = problem;
+    held.holds_along = true;
+    const ConeImpulses found = cone_newton(held, begin, settled);
+    return found.off <= settled ? found : cone_proximal(held, found.impulse, settled);
   }
   return {begin, Projections(problem).off(begin).lpNorm<Eigen::Infinity>()};
 }

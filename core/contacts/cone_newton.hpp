@@ -13,6 +13,7 @@ struct ConeProblem {
   Eigen::MatrixXd W;             ///< 3 by touch, symmetric, positive semidefinite, 1/kg
   Eigen::VectorXd q;             ///< rates without impulses, m/s: normal, then two tangents
   std::vector<double> friction;  ///< by touch, >= 0; infinite: rough
+  bool holds_along = false;      ///< what is rough has u_t = 0 and any p_t, pressed or not
 };
 
 /// Impulses, and what they are off.
@@ -41,11 +42,17 @@ struct ConeImpulses {
 /// Newton's method alone pays with so many touches at most, and any of this with so many.
 constexpr std::size_t most_for_newton = 32;
 constexpr std::size_t most_at_once = 64;
-/// For the attempts at one problem, from 0 on, each worth more work than the one before: Newton's
-/// method, where touches are few; the proximal points; these with friction of 100 where touches are
-/// rough, as what is hardly pressed and has no bound may be held by nothing at all.
+/// In the order of what they cost.
+enum class AtOnce {
+  newton,      ///< Newton's method, where touches are few
+  proximal,    ///< the proximal points
+  bounded,     ///< these with friction of 100 where touches are rough, as what is hardly pressed
+               ///< and has no bound may be held by nothing at all
+  held_along,  ///< where touches are rough, `holds_along`; what parts is the caller's to let go
+};
+/// In one of these ways; what it is not meant for gives the impulses to begin with.
 [[nodiscard]] ConeImpulses cone_at_once(const ConeProblem& problem, const Eigen::VectorXd& begin,
-                                        double settled, int attempt);
+                                        double settled, AtOnce way);
 
 }  // namespace core
 }  // namespace kairos

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 
 namespace kairos {
 inline namespace core {
@@ -19,9 +20,12 @@ constexpr int damped_from = 1000;
 /// in so many more, change what rounding does: others would do the same.
 constexpr double nearly_settled = 1e4;
 constexpr int idle_sweeps = 64;
-/// What has not settled after so many sweeps, and after four times as many again and again, is
-/// looked for at all touches at once; in steps, which come often, by Newton's method only.
+/// What has not settled after so many sweeps is looked for at all touches at once, and after four
+/// and sixteen times as many again, in these ways; steps, which come often, have the first only.
 constexpr int at_once_after = 64;
+constexpr std::array ways_of_impacts = {AtOnce::newton, AtOnce::proximal, AtOnce::bounded};
+constexpr std::array ways_of_steps = {AtOnce::newton, AtOnce::newton, AtOnce::newton};
+constexpr std::array last_ways_of_steps = {AtOnce::newton, AtOnce::newton, AtOnce::held_along};
 
 }  // namespace
 
@@ -53,8 +57,8 @@ ContactSweeps::ContactSweeps(std::span<const GroupBody> bodies,
 
 ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
                                           std::span<const Vector3> rates,
-                                          std::span<const Vector3> begin, double settled,
-                                          bool rubs) const {
+                                          std::span<const Vector3> begin, double settled, bool rubs,
+                                          bool last_resort) const {
   Swept swept{std::vector<Vector3>(blocks_.size(), Vector3::Zero()), velocities};
   std::vector<Vector3> along(blocks_.size(), Vector3::Zero());
   for (std::size_t k = 0; k < blocks_.size() && !begin.empty(); ++k) {
@@ -64,9 +68,11 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
   double least = nearly_settled * settled;
   int idle = 0;
   const bool in_step = !rates.empty();
-  int at_once =
-      blocks_.size() <= (in_step ? most_for_newton : most_at_once) ? at_once_after : most_sweeps;
-  int attempt = 0;
+  const std::size_t most = in_step && !last_resort ? most_for_newton : most_at_once;
+  int at_once = blocks_.size() <= most ? at_once_after : most_sweeps;
+  std::span<const AtOnce> ways = !in_step      ? ways_of_impacts
+                                 : last_resort ? last_ways_of_steps
+                                               : ways_of_steps;
   for (int round = 0; round < most_sweeps; ++round) {
     swept.changed = 0.0;
     swept.solves += static_cast<int>(blocks_.size());
@@ -92,12 +98,14 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
     } else if (swept.changed <= nearly_settled * settled && ++idle >= idle_sweeps) {
       break;
     }
-    if (round == at_once) {
+    if (round == at_once && !ways.empty()) {
       at_once *= 4;
+      const AtOnce way = ways.front();
+      ways = ways.subspan(1);
       const double off =
-          settle_at_once(velocities, rates, settled, rubs, attempt, along, swept.velocities);
-      attempt += in_step ? 0 : 1;
-      if (off <= settled) {
+          settle_at_once(velocities, rates, settled, rubs, way, along, swept.velocities);
+      // Sweeps would let go again what was held.
+      if (off <= (way == AtOnce::held_along ? nearly_settled : 1.0) * settled) {
         swept.changed = off;
         break;
       }
@@ -113,7 +121,7 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
 /// off, m/s.
 double ContactSweeps::settle_at_once(const std::vector<Vector6>& free,
                                      std::span<const Vector3> rates, double settled, bool rubs,
-                                     int attempt, std::vector<Vector3>& along,
+                                     AtOnce way, std::vector<Vector3>& along,
                                      std::vector<Vector6>& velocities) const {
   const std::size_t n = blocks_.size();
   const auto size = static_cast<Eigen::Index>(3 * n);
@@ -137,7 +145,7 @@ double ContactSweeps::settle_at_once(const std::vector<Vector6>& free,
       }
     }
   }
-  const ConeImpulses found = cone_at_once(problem, begin, settled, attempt);
+  const ConeImpulses found = cone_at_once(problem, begin, settled, way);
   velocities = free;
   for (std::size_t k = 0; k < n; ++k) {
     along[k] = found.impulse.segment<3>(static_cast<Eigen::Index>(3 * k));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/contacts/cone_newton.hpp"
 #include "core/contacts/contact_system.hpp"
 
 #include <Eigen/Core>
@@ -42,8 +43,10 @@ class ContactSweeps {
   /// @param rates  what is added to the rates, by touch: along the normal and two tangents that
   ///               `axes` tells, m/s; empty: nothing
   /// @param begin  impulses to begin with, by touch, N s; empty: none
+  /// @param last_resort  in the end what is rough is held along, pressed or not, unless it settles
   [[nodiscard]] Swept sweep(std::vector<Vector6> velocities, std::span<const Vector3> rates,
-                            std::span<const Vector3> begin, double settled, bool rubs) const;
+                            std::span<const Vector3> begin, double settled, bool rubs,
+                            bool last_resort = false) const;
 
   /// From here on this touch has no friction; whether it had some.
   bool make_smooth(std::size_t touch) { return std::exchange(blocks_[touch].friction, 0.0) != 0.0; }
@@ -68,7 +71,7 @@ class ContactSweeps {
     double friction = 0.0;
   };
   double settle_at_once(const std::vector<Vector6>& free, std::span<const Vector3> rates,
-                        double settled, bool rubs, int attempt, std::vector<Vector3>& along,
+                        double settled, bool rubs, AtOnce way, std::vector<Vector3>& along,
                         std::vector<Vector6>& velocities) const;
   static void push_along(const Block& block, const Vector3& impulse, std::vector<Vector6>& v);
 

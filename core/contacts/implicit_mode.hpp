@@ -13,10 +13,12 @@ inline namespace core {
 /// 0, what presses does not part, and each impulse is within its cone, against what still slides at
 /// the end [Jourdan1998]: touch by touch, again and again, from `warm` on (forces by touch, N;
 /// empty: from none). Velocities at the start keep no approach. Of first order in h.
+/// @param last_resort  where sweeps do not settle, what is rough is held along the surfaces by what
+///                     does not press it, too, unless it parts
 ///
 /// A refusal where sweeps do not settle, or where bodies hang on joints.
 [[nodiscard]] TurningMode implicit_mode(const TurningState& state, double h,
-                                        std::span<const Vector3> warm);
+                                        std::span<const Vector3> warm, bool last_resort = false);
 
 }  // namespace core
 }  // namespace kairos

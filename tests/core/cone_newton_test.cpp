@@ -101,6 +101,23 @@ ConeProblem wall(int wide, int high, Random& random) {
   return problem;
 }
 
+/// One to six touches, coupled at random; in every other trial of fewer bodies than touches, so
+/// that impulses are redundant.
+ConeProblem couplings(int trial, Random& random) {
+  const Eigen::Index touches = 1 + trial % 6;
+  const Eigen::Index rows = 3 * touches;
+  const Eigen::Index freedom = trial % 2 == 0 ? rows : 6 * (1 + touches / 3);
+  Eigen::MatrixXd J(rows, freedom);
+  Eigen::VectorXd motion(freedom);
+  for (Eigen::Index i = 0; i < freedom; ++i) {
+    motion[i] = random.uniform(-1.0, 1.0);
+    for (Eigen::Index j = 0; j < rows; ++j) {
+      J(j, i) = random.uniform(-1.0, 1.0);
+    }
+  }
+  return {J * J.transpose(), J * motion, std::vector<double>(static_cast<std::size_t>(touches))};
+}
+
 Vector6 falling(double speed) { return (Vector6() << 0.0, -speed, 0.0, 0.0, 0.0, 0.0).finished(); }
 
 }  // namespace
@@ -111,27 +128,14 @@ TEST_CASE("Newton's method on cones finds impulses that satisfy Coulomb's law, w
   int found = 0;
   constexpr int trials = 2'000;
   for (int trial = 0; trial < trials; ++trial) {
-    const Eigen::Index touches = 1 + trial % 6;
-    const Eigen::Index rows = 3 * touches;
-    // Fewer bodies than touches in every other problem: impulses are redundant.
-    const Eigen::Index freedom = trial % 2 == 0 ? rows : 6 * (1 + touches / 3);
-    ConeProblem problem;
-    Eigen::MatrixXd J(rows, freedom);
-    Eigen::VectorXd motion(freedom);
-    for (Eigen::Index i = 0; i < freedom; ++i) {
-      motion[i] = random.uniform(-1.0, 1.0);
-      for (Eigen::Index j = 0; j < rows; ++j) {
-        J(j, i) = random.uniform(-1.0, 1.0);
-      }
-    }
-    problem.W = J * J.transpose();
-    problem.q = J * motion;
-    for (Eigen::Index k = 0; k < touches; ++k) {
+    ConeProblem problem = couplings(trial, random);
+    for (std::size_t k = 0; k < problem.friction.size(); ++k) {
       const double mu = random.uniform(0.0, 1.0);
-      problem.friction.push_back(k % 5 == 4 ? infinity : k % 5 == 3 ? 0.0 : mu);
+      problem.friction[k] = k % 5 == 4 ? infinity : k % 5 == 3 ? 0.0 : mu;
     }
     constexpr double settled = 1e-12;  // of velocities near 1
-    const Eigen::VectorXd p = cone_newton(problem, Eigen::VectorXd::Zero(rows), settled).impulse;
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(problem.q.size());
+    const Eigen::VectorXd p = cone_newton(problem, none, settled).impulse;
     // What is off in a touch is measured in velocities, and felt by compliances up to 30.
     found += keeps_the_law(problem, p, 1e-10 * (1.0 + p.norm())) ? 1 : 0;
   }
@@ -157,6 +161,33 @@ TEST_CASE("proximal points find the impulses of walls, whose touches are redunda
   CAPTURE(newton, proximal);
   CHECK(newton < proximal);
   CHECK(proximal >= trials - 2);
+}
+
+TEST_CASE("touches that hold along the surfaces, pressed or not, always have impulses",
+          "[friction]") {
+  // Of least energy: a quadratic program, convex and feasible, since no motion keeps all of it.
+  Random random(20261128);
+  for (int trial = 0; trial < 400; ++trial) {
+    ConeProblem problem = couplings(trial, random);
+    for (double& mu : problem.friction) {
+      mu = random.uniform(0.0, 1.0) < 0.3 ? 0.0 : infinity;
+    }
+    problem.friction[0] = infinity;
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(problem.q.size());
+    constexpr double settled = 1e-12;  // of velocities near 1
+    const Eigen::VectorXd p = cone_at_once(problem, none, settled, AtOnce::held_along).impulse;
+    const Eigen::VectorXd u = problem.W * p + problem.q;
+    const double near = 1e-10 * (1.0 + p.norm());  // what is off is felt by compliances up to 30
+    CAPTURE(trial, p, u);
+    for (std::size_t k = 0; k < problem.friction.size(); ++k) {
+      const auto at = static_cast<Eigen::Index>(3 * k);
+      CHECK(p[at] >= 0.0);
+      CHECK(u[at] >= -near);
+      CHECK(p[at] * u[at] <= near);
+      const bool rough = problem.friction[k] > 0.0;
+      CHECK((rough ? u : p).segment<2>(at + 1).norm() <= (rough ? near : 0.0));
+    }
+  }
 }
 
 TEST_CASE("a light ball between heavy ones is settled in few sweeps", "[friction]") {

@@ -204,7 +204,9 @@ EventAccumulation::Finding EventAccumulation::conclude(BodyIndex a, BodyIndex b,
     }
     const ImpactHistory& history = histories_[i];
     if (worth_a_look(history.chain())) {
-      if (std::string reason = squeeze(i, t); !reason.empty()) {
+      const std::vector<BodyIndex> met = history.partners();
+      std::string reason = met.size() == 2 ? squeeze(i, {met[0], met[1]}, t) : std::string();
+      if (!reason.empty()) {
         return {.kind = Finding::Kind::squeezed, .reason = std::move(reason), .bodies = {a, b}};
       }
     }
@@ -344,11 +346,9 @@ EventAccumulation::Finding EventAccumulation::collapse(BodyIndex a, BodyIndex b,
   return finding;
 }
 
-/// Says whether body i is between two bodies that nothing stops from meeting: its impacts follow
-/// each other ever faster until no room is left.
-std::string EventAccumulation::squeeze(BodyIndex i, Instant t) const {
-  const std::vector<BodyIndex> partners = histories_[i].partners();
-  if (partners.size() != 2 || run_.model.is_free(partners[0]) || run_.model.is_free(partners[1])) {
+std::string EventAccumulation::squeeze(BodyIndex i, const BodyPair& between, Instant t) const {
+  const auto& [one, other] = between;
+  if (!run_.model.is_free(i) || run_.model.is_free(one) || run_.model.is_free(other)) {
     return {};
   }
   Vector3 normal = Vector3::Zero();
@@ -356,7 +356,7 @@ std::string EventAccumulation::squeeze(BodyIndex i, Instant t) const {
   double gap = 0.0;
   double left = std::numeric_limits<double>::infinity();
   bool opposite = true;
-  for (const BodyIndex j : partners) {
+  for (const BodyIndex j : {one, other}) {
     const Overlap o = run_.detector.overlap(run_.model.shape(j), motions_.at(j, t).pose,
                                             run_.model.shape(i), motions_.at(i, t).pose);
     opposite = normal.isZero(0.0) || normal.dot(o.normal) < -1.0 + 1e-12;
@@ -375,8 +375,8 @@ std::string EventAccumulation::squeeze(BodyIndex i, Instant t) const {
       "accumulation: {} and '{}' close on '{}': no room is left at t = {} s, and "
       "impacts follow each other ever faster until then; allowed: a run that ends "
       "before (--duration)",
-      "'" + run_.model.body(partners[0]).name + "'", run_.model.body(partners[1]).name,
-      run_.model.body(i).name, (t + gap / closing).seconds);
+      "'" + run_.model.body(one).name + "'", run_.model.body(other).name, run_.model.body(i).name,
+      (t + gap / closing).seconds);
 }
 
 void EventAccumulation::persist(Archive& archive) { archive(histories_); }

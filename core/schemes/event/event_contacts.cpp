@@ -110,6 +110,9 @@ void EventContacts::settle_anew(BodyIndex i, Instant t) {
     event.contact = worst->contact;
     return meet(event, t);
   }
+  if (settle(bodies, t, {.may_turn = true, .last_resort = true})) {
+    return;
+  }
   set_free(bodies, t);
   run_.stop(t, fmt::format("contact: the contacts of '{}' cannot be kept from here on: {}",
                            run_.model.body(i).name, why));

@@ -51,6 +51,8 @@ class EventModes {
     bool not_flat = false;  ///< that nothing turns was tried in vain
     /// Time does not go on otherwise: a step is made over all that is in touch, pressed or not.
     bool step_over = false;
+    /// The run would stop: what is rough may be held along the surfaces where nothing presses it.
+    bool last_resort = false;
   };
   /// Settles all that touches the seeds at t, whose states are at `now`; false, and nothing has
   /// changed, where they cannot go on in touch. `why_not` then says why.
@@ -189,7 +191,7 @@ class EventModes {
   void find_forces(const Gathered& found, Turning& turning, Instant t);
   [[nodiscard]] bool ends_in_touch(const Gathered& found, const Turning& turning) const;
   [[nodiscard]] bool step_over(const Gathered& found, Turning& turning, Instant t,
-                               bool pressed_or_not);
+                               const SettleOptions& asked);
   static void count_implicit(const Turning& turning, const std::pair<int, int>& left, bool is_short,
                              Patch& patch);
   void keep_forces(const Gathered& found, const Turning& turning);

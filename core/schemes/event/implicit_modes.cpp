@@ -55,8 +55,8 @@ std::pair<int, int> EventModes::implicit_steps(const Gathered& found) const {
 /// Steps over what forces at an instant are not known of: with forces that act all through a step,
 /// which is as short as it takes to keep gaps. False, and why not, where none is.
 bool EventModes::step_over(const Gathered& found, Turning& turning, Instant t,
-                           bool pressed_or_not) {
-  turning.all = pressed_or_not;
+                           const SettleOptions& asked) {
+  turning.all = asked.step_over;
   const std::string exactly = turning.mode.refusal;
   std::vector<Vector3> warm;
   for (const Touch& touch : turning.group.start.touches) {
@@ -71,7 +71,7 @@ bool EventModes::step_over(const Gathered& found, Turning& turning, Instant t,
   double h = std::min({implicit_part * frame, run_.epoch_end() - t, before});
   bool halved = false;
   for (int round = 0; round < most_halvings; ++round, h *= 0.5, halved = true) {
-    turning.mode = implicit_mode(turning.group.start, h, warm);
+    turning.mode = implicit_mode(turning.group.start, h, warm, asked.last_resort);
     turning.mode.keeps_all = turning.all;
     run_.cost.contact_solves += turning.mode.solves;
     if (!turning.mode.refusal.empty()) {

@@ -84,8 +84,7 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
   if (!steps_over) {
     find_forces(found, turning, t);
   }
-  if ((steps_over || !turning.mode.refusal.empty()) &&
-      !step_over(found, turning, t, asked.step_over)) {
+  if ((steps_over || !turning.mode.refusal.empty()) && !step_over(found, turning, t, asked)) {
     return false;
   }
   const auto& forces = turning.mode.forces.force;
@@ -127,7 +126,7 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
       turning.mode.refusal = turning.step.refusal.empty()
                                  ? "a corner of a body in touch is to strike at once"
                                  : turning.step.refusal;
-      if (!step_over(found, turning, t, false) || turning.mode.flies) {
+      if (!step_over(found, turning, t, asked) || turning.mode.flies) {
         return false;
       }
     }
