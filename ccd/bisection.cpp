@@ -31,7 +31,7 @@ class Bisection {
     }
     const double duration = motion_.duration();
     double t = 0.0;
-    bool was_inside = start.overlapping;
+    bool in_touch = start.overlapping;  // all the time since the start, as far as looks tell
     while (t < duration) {
       const double step = limited_step(t);
       if (!(t + step > t) || toi_.evaluations >= most_looks) {
@@ -40,10 +40,13 @@ class Bisection {
       last_step_ = step;
       const double next = std::min(duration, t + step);
       const bool inside = overlaps(next);
-      if (inside && !was_inside) {
+      if (inside && !in_touch) {
         return bisect(t, next);
       }
-      was_inside = inside;
+      if (inside && look(next).gap < -tolerance_) {
+        return return_to_touch(t, next, start);
+      }
+      in_touch = inside;
       t = next;
       if (gone_for_good(t)) {
         break;
@@ -129,6 +132,24 @@ class Bisection {
       (overlaps(middle) ? inside : outside) = middle;
     }
     return answer(ToiStatus::impact, outside, inside, look(outside));
+  }
+
+  /// They were in touch until `outside`, and go into each other until `inside`: after a hop that
+  /// no look saw, or as they are pressed together.
+  TimeOfImpact return_to_touch(double outside, double inside, const Overlap& start) {
+    const double begin = outside;
+    while (true) {
+      const double middle = outside + 0.5 * (inside - outside);
+      if (!(middle > outside && middle < inside)) {
+        break;
+      }
+      if (!overlaps(middle)) {
+        return bisect(middle, inside);
+      }
+      (look(middle).gap < -tolerance_ ? inside : outside) = middle;
+    }
+    return begin > 0.0 ? answer(ToiStatus::impact, outside, inside, look(outside))
+                       : answer(ToiStatus::impact, 0.0, 0.0, start);
   }
 
   TimeOfImpact answer(ToiStatus status, double t_lo, double t_hi, const Overlap& at) {

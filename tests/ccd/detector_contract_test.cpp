@@ -191,6 +191,32 @@ TEST_CASE("what advancement calls separated is separated, and impacts are not la
   }
 }
 
+TEST_CASE("what starts in touch and is pressed together meets at once, or at the end of its hop",
+          "[ccd][contract]") {
+  // A ball of 1 m on a floor, thrown up at v: it is back after 2 v/g, maybe long before a look.
+  constexpr double g = 9.8;
+  for (const auto& detector : detectors()) {
+    if (!detector->info().locates) {
+      continue;
+    }
+    CAPTURE(std::string(detector->info().name));
+    for (const double v : {0.0, 1e-3, 0.1, 1.0}) {
+      Query q{Sphere{0.5}, HalfSpace{}, moving(pose({0, 0.5, 0}), zero), moving(pose(zero), zero),
+              1.0};
+      q.motion_a.position =
+          Polynomial<3>(Vector3(0, 0.5, 0), Vector3(0, v, 0), Vector3(0, -0.5 * g, 0));
+      q.motion_a.velocity = Polynomial<3>(Vector3(0, v, 0), Vector3(0, -g, 0));
+      for (const Query& asked : {q, q.exchanged()}) {
+        const TimeOfImpact toi = asked.ask(*detector);
+        CAPTURE(v, toi.t_lo, toi.t_hi);
+        CHECK(toi.status == ToiStatus::impact);
+        // A tolerance of 1e-9 m is a way of the ball's speed, or of its fall from rest.
+        CHECK(toi.t_lo == Approx(2.0 * v / g).margin(v > 0.0 ? 1e-8 / v : std::sqrt(2e-8 / g)));
+      }
+    }
+  }
+}
+
 TEST_CASE("bisection misses a grazed corner, certified does not", "[ccd][contract]") {
   // The ball cuts the corner of a box by 1 mm between two looks.
   const double cut = 1e-3;

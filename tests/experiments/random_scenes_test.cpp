@@ -386,6 +386,12 @@ TEST_CASE("random scenes of bodies in touch that stopped once", "[random]") {
     CAPTURE(index, trial.reason);
     CHECK(trial.fate == Fate::right);
   }
+  // A rough corner that would pull if it stuck and approaches if it opens; it stopped after 0.62 s.
+  RandomScene rough = rough_scene(20261202, 210);
+  rough.duration = 0.64;
+  const Trial held = try_scene(rough);
+  CAPTURE(held.reason);
+  CHECK(held.fate == Fate::right);
 }
 
 TEST_CASE("a random scene is written as it is run", "[random]") {

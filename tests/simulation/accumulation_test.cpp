@@ -213,6 +213,20 @@ TEST_CASE("a ball between walls that close on it: the time is told at which no r
   CHECK(sim.result.cost.impacts < 10'000);
 }
 
+TEST_CASE("no room is left for a ball that lies on one of two walls, either", "[accumulation]") {
+  // A press comes down on a ball of 2 m on the floor, where friction holds it.
+  const std::string text =
+      "duration = 2\nframe = 0.1\nG = 9.8\n" + plane("floor", "[0, 1, 0]") + "friction = 0.3\n" +
+      plane("press", "[0, -1, 0]", "[0, 2.8, 0]") + "friction = 0.3\n" +
+      "[body.drive]\namplitude = [0, -1, 0]\nfrequency = " + fmt::format("{}", 0.5 / M_PI) + "\n" +
+      ball("ball", 1.0, 0.25, "[0, 1, 0]", "[0, 0, 0.1]") + "friction = 0.3\n";
+  const auto sim = run(text);
+  INFO(sim.result.reason);
+  REQUIRE(sim.result.status == RunStatus::stopped);
+  CHECK(sim.result.reason.find("close on 'ball': no room is left at t = 0.92") !=
+        std::string::npos);  // sin t = 0.8
+}
+
 TEST_CASE("more events in a frame than are allowed stop the run, and the bound can be moved",
           "[accumulation]") {
   const auto text = [](double speed) {
