@@ -43,7 +43,7 @@ class ContactSweeps {
   /// @param rates  what is added to the rates, by touch: along the normal and two tangents that
   ///               `axes` tells, m/s; empty: nothing
   /// @param begin  impulses to begin with, by touch, N s; empty: none
-  /// @param last_resort  in the end what is rough is held along, pressed or not, unless it settles
+  /// @param last_resort  of a step: where nothing settles, rough touches hold along their surfaces
   [[nodiscard]] Swept sweep(std::vector<Vector6> velocities, std::span<const Vector3> rates,
                             std::span<const Vector3> begin, double settled, bool rubs,
                             bool last_resort = false) const;
