@@ -42,7 +42,7 @@ struct ConeImpulses {
 /// Newton's method alone pays with so many touches at most, and any of this with so many.
 constexpr std::size_t most_for_newton = 32;
 constexpr std::size_t most_at_once = 64;
-/// In the order of what they cost.
+/// Ways to look for impulses at all touches at once.
 enum class AtOnce {
   newton,      ///< Newton's method, where touches are few
   proximal,    ///< the proximal points
@@ -50,7 +50,7 @@ enum class AtOnce {
                ///< and has no bound may be held by nothing at all
   held_along,  ///< where touches are rough, `holds_along`; what parts is the caller's to let go
 };
-/// In one of these ways; what it is not meant for gives the impulses to begin with.
+/// In this way; what it is not meant for gives the impulses to begin with.
 [[nodiscard]] ConeImpulses cone_at_once(const ConeProblem& problem, const Eigen::VectorXd& begin,
                                         double settled, AtOnce way);
 

@@ -165,7 +165,7 @@ TEST_CASE("proximal points find the impulses of walls, whose touches are redunda
 
 TEST_CASE("touches that hold along the surfaces, pressed or not, always have impulses",
           "[friction]") {
-  // Of least energy: a quadratic program, convex and feasible, since no motion keeps all of it.
+  // Of least energy: a quadratic program, convex, and feasible, as standing still is.
   Random random(20261128);
   for (int trial = 0; trial < 400; ++trial) {
     ConeProblem problem = couplings(trial, random);

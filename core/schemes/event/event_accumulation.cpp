@@ -205,7 +205,7 @@ EventAccumulation::Finding EventAccumulation::conclude(BodyIndex a, BodyIndex b,
     const ImpactHistory& history = histories_[i];
     if (worth_a_look(history.chain())) {
       const std::vector<BodyIndex> met = history.partners();
-      std::string reason = met.size() == 2 ? squeeze(i, {met[0], met[1]}, t) : std::string();
+      std::string reason = met.size() == 2 ? squeeze(i, met[0], met[1], t) : std::string();
       if (!reason.empty()) {
         return {.kind = Finding::Kind::squeezed, .reason = std::move(reason), .bodies = {a, b}};
       }
@@ -346,8 +346,21 @@ EventAccumulation::Finding EventAccumulation::collapse(BodyIndex a, BodyIndex b,
   return finding;
 }
 
-std::string EventAccumulation::squeeze(BodyIndex i, const BodyPair& between, Instant t) const {
-  const auto& [one, other] = between;
+std::string EventAccumulation::squeeze(const BodyPair& one, const BodyPair& other,
+                                       Instant t) const {
+  std::string reason;
+  for (const auto& [i, beside] : {one, BodyPair{one.second, one.first}}) {
+    for (const auto& [k, opposite] : {other, BodyPair{other.second, other.first}}) {
+      if (i == k && reason.empty()) {
+        reason = squeeze(i, beside, opposite, t);
+      }
+    }
+  }
+  return reason;
+}
+
+std::string EventAccumulation::squeeze(BodyIndex i, BodyIndex one, BodyIndex other,
+                                       Instant t) const {
   if (!run_.model.is_free(i) || run_.model.is_free(one) || run_.model.is_free(other)) {
     return {};
   }

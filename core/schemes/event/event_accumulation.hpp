@@ -67,9 +67,9 @@ class EventAccumulation {
   [[nodiscard]] bool go_on_for_sure(const Rebound& of, const Scale& scale);
   /// What follows of such an impact, which is counted; the two are at `now`.
   [[nodiscard]] Finding after_impact(const Rebound& of, const Scale& scale) const;
-  /// Says that body i is between two that nothing stops from meeting, as its impacts follow each
-  /// other ever faster until no room is left; empty: it is not.
-  [[nodiscard]] std::string squeeze(BodyIndex i, const BodyPair& between, Instant t) const;
+  /// Says that the body that two pairs share is between two that nothing stops from meeting: its
+  /// impacts follow each other ever faster until no room is left. Empty: it is not.
+  [[nodiscard]] std::string squeeze(const BodyPair& one, const BodyPair& other, Instant t) const;
   /// A look at a pair at t that changed nothing: true where looks get nowhere, each within
   /// `resolution`, s, of the one before.
   [[nodiscard]] bool stalls(BodyIndex a, BodyIndex b, Instant t, double resolution);
@@ -89,6 +89,7 @@ class EventAccumulation {
                            Instant t) const;
   [[nodiscard]] Finding collapse(BodyIndex a, BodyIndex b, Instant t,
                                  std::int64_t most_impacts) const;
+  [[nodiscard]] std::string squeeze(BodyIndex i, BodyIndex one, BodyIndex other, Instant t) const;
   [[nodiscard]] std::vector<BodyPair> cluster_pairs(BodyIndex a, BodyIndex b) const;
   [[nodiscard]] double restitution(BodyIndex a, BodyIndex b) const;
 

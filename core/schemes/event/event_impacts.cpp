@@ -705,10 +705,8 @@ void EventContacts::hand_on(const Event& first, double approach, std::vector<Bod
       if (end_by_pushing(bodies, 0.0, t)) {
         return;
       }
-      const bool is_a = worst->a == first.a || worst->b == first.a;
-      const BodyIndex between = is_a ? first.a : first.b;
-      const std::string squeezed = accumulation_.squeeze(
-          between, {is_a ? first.b : first.a, worst->a == between ? worst->b : worst->a}, t);
+      const std::string squeezed =
+          accumulation_.squeeze({first.a, first.b}, {worst->a, worst->b}, t);
       set_free(bodies, t);
       return run_.stop(
           t, !squeezed.empty()
