@@ -1,12 +1,12 @@
 #include "core/contacts/contact_sweeps.hpp"
 
-#include "core/contacts/cone_newton.hpp"
 #include "core/contacts/coulomb_cone.hpp"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace kairos {
 inline namespace core {
@@ -16,6 +16,10 @@ constexpr int most_sweeps = 4000;
 /// After so many sweeps impulses change by half of what they would alone: what goes round in a
 /// circle comes to rest. They stay within their cones, which are convex.
 constexpr int damped_from = 1000;
+/// Redundant touches that contradict each other by roundoff of where they are cannot settle better
+/// than by this many times that, which is believed up to this many times what counts as settled.
+constexpr double contradiction = 4.0;
+constexpr double most_contradiction = 100.0;
 /// Sweeps that change less than this many times what has settled, and do not come to half of that
 /// in so many more, change what rounding does: others would do the same.
 constexpr double nearly_settled = 1e4;
@@ -26,6 +30,54 @@ constexpr int at_once_after = 64;
 constexpr std::array ways_of_impacts = {AtOnce::newton, AtOnce::proximal, AtOnce::bounded};
 constexpr std::array ways_of_steps = {AtOnce::newton, AtOnce::newton, AtOnce::newton};
 constexpr std::array last_ways_of_steps = {AtOnce::newton, AtOnce::newton, AtOnce::held_along};
+
+/// When sweeps of a step over many touches are helped by linear systems (`solve_as_found`). What
+/// these give is swept on, and taken back if it has not come nearer in the end.
+class Trial {
+ public:
+  /// Whether a system is to be solved after this sweep, which changed so much.
+  [[nodiscard]] bool is_due(int round, double changed, double settled) const {
+    return runs() ? (round - begin_) % solve_every == 0
+                  : trials_ < most_trials && round >= next_ &&
+                        (changed <= nearly_settled * settled || round >= whatever_from);
+  }
+  [[nodiscard]] bool runs() const { return begin_ >= 0; }
+  void begin(int round, double changed, const std::vector<Vector3>& along) {
+    begin_ = round;
+    changed_ = changed;
+    along_ = along;
+    ++trials_;
+  }
+  [[nodiscard]] bool ends(int round) const { return runs() && round == begin_ + lasts; }
+  /// Whether it is to be taken back: it ended, and changes so much.
+  bool in_vain(int round, double changed) {
+    begin_ = -1;
+    anew_ = !(changed < changed_);
+    failed_ += anew_ ? 1 : 0;
+    next_ = round + (wait << failed_);
+    return anew_;
+  }
+  /// Whether impulses are solved for without regard to what they were.
+  bool anew() { return std::exchange(anew_, false); }
+  /// What to go back to, and what the sweep before it changed.
+  [[nodiscard]] const std::vector<Vector3>& along() const { return along_; }
+  [[nodiscard]] double changed() const { return changed_; }
+
+ private:
+  static constexpr int solve_every = 12;
+  static constexpr int lasts = 48;
+  static constexpr int most_trials = 8;
+  static constexpr int first = 16;
+  static constexpr int wait = 16;             ///< after one in vain twice as long each time
+  static constexpr int whatever_from = 1000;  ///< however far from settled
+  std::vector<Vector3> along_;
+  double changed_ = 0.0;
+  bool anew_ = true;
+  int begin_ = -1;
+  int next_ = first;
+  int trials_ = 0;
+  int failed_ = 0;
+};
 
 }  // namespace
 
@@ -55,6 +107,27 @@ ContactSweeps::ContactSweeps(std::span<const GroupBody> bodies,
   }
 }
 
+/// Each touch in turn is given this share of what it lacks; returns the most that changed, m/s.
+double ContactSweeps::sweep_once(std::span<const Vector3> rates, bool rubs, double share,
+                                 std::vector<Vector3>& along,
+                                 std::vector<Vector6>& velocities) const {
+  double changed = 0.0;
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    const Block& block = blocks_[k];
+    const Vector3 u = rate_of(k, velocities, rates);
+    const Vector3 alone =
+        coulomb_impulse(block.W, u - block.W * along[k], rubs ? block.friction : 0.0);
+    const Vector3 more = share * (alone - along[k]);
+    if (more.isZero(0.0)) {
+      continue;
+    }
+    push_along(block, more, velocities);
+    changed = std::max(changed, (block.W * more).norm());
+    along[k] += more;
+  }
+  return changed;
+}
+
 ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
                                           std::span<const Vector3> rates,
                                           std::span<const Vector3> begin, double settled, bool rubs,
@@ -63,34 +136,43 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
   std::vector<Vector3> along(blocks_.size(), Vector3::Zero());
   for (std::size_t k = 0; k < blocks_.size() && !begin.empty(); ++k) {
     along[k] = blocks_[k].axes * begin[k];
-    push_along(blocks_[k], along[k], swept.velocities);
   }
+  push_all(along, swept.velocities);
   double least = nearly_settled * settled;
   int idle = 0;
   const bool in_step = !rates.empty();
+  const bool many = in_step && blocks_.size() > most_for_newton;
   const std::size_t most = in_step && !last_resort ? most_for_newton : most_at_once;
   int at_once = blocks_.size() <= most ? at_once_after : most_sweeps;
   std::span<const AtOnce> ways = !in_step      ? ways_of_impacts
                                  : last_resort ? last_ways_of_steps
                                                : ways_of_steps;
+  Trial trial;
+  double near_enough = settled;
   for (int round = 0; round < most_sweeps; ++round) {
-    swept.changed = 0.0;
+    swept.changed =
+        sweep_once(rates, rubs, round < damped_from ? 1.0 : 0.5, along, swept.velocities);
     swept.solves += static_cast<int>(blocks_.size());
-    for (std::size_t k = 0; k < blocks_.size(); ++k) {
-      const Block& block = blocks_[k];
-      const Vector3 u = rate(k, swept.velocities) + (rates.empty() ? Vector3::Zero() : rates[k]);
-      const Vector3 alone =
-          coulomb_impulse(block.W, u - block.W * along[k], rubs ? block.friction : 0.0);
-      const Vector3 more = (round < damped_from ? 1.0 : 0.5) * (alone - along[k]);
-      if (more.isZero(0.0)) {
-        continue;
-      }
-      push_along(block, more, swept.velocities);
-      swept.changed = std::max(swept.changed, (block.W * more).norm());
-      along[k] += more;
-    }
-    if (swept.changed <= settled) {
+    if (swept.changed <= near_enough) {
       break;
+    }
+    if (trial.ends(round) && trial.in_vain(round, swept.changed)) {
+      near_enough = settled;
+      swept.changed = trial.changed();
+      along = trial.along();
+      swept.velocities = velocities;
+      push_all(along, swept.velocities);
+    }
+    if (many && trial.is_due(round, swept.changed, settled)) {
+      if (!trial.runs()) {
+        trial.begin(round, swept.changed, along);
+      }
+      const double off =
+          solve_as_found(velocities, rates, rubs, trial.anew(), along, swept.velocities);
+      near_enough = contradiction * off <= most_contradiction * settled
+                        ? std::max(settled, contradiction * off)
+                        : settled;
+      continue;
     }
     if (swept.changed <= 0.5 * least) {
       least = swept.changed;
@@ -117,46 +199,20 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
   return swept;
 }
 
-/// Goes to the nearest that is found at all touches at once from here on, and returns how far it is
-/// off, m/s.
-double ContactSweeps::settle_at_once(const std::vector<Vector6>& free,
-                                     std::span<const Vector3> rates, double settled, bool rubs,
-                                     AtOnce way, std::vector<Vector3>& along,
-                                     std::vector<Vector6>& velocities) const {
-  const std::size_t n = blocks_.size();
-  const auto size = static_cast<Eigen::Index>(3 * n);
-  ConeProblem problem{Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd(size), {}};
-  Eigen::VectorXd begin(size);
-  for (std::size_t k = 0; k < n; ++k) {
-    const auto at = static_cast<Eigen::Index>(3 * k);
-    problem.q.segment<3>(at) = rate(k, free) + (rates.empty() ? Vector3::Zero() : rates[k]);
-    problem.friction.push_back(rubs ? blocks_[k].friction : 0.0);
-    begin.segment<3>(at) = along[k];
-    for (std::size_t l = 0; l < n; ++l) {
-      auto W = problem.W.block<3, 3>(at, static_cast<Eigen::Index>(3 * l));
-      for (const auto& [i, of] :
-           {std::pair{blocks_[k].a, &blocks_[k].of_a}, std::pair{blocks_[k].b, &blocks_[k].of_b}}) {
-        for (const auto& [j, to] : {std::pair{blocks_[l].a, &blocks_[l].to_a},
-                                    std::pair{blocks_[l].b, &blocks_[l].to_b}}) {
-          if (i == j) {
-            W += *of * *to;
-          }
-        }
-      }
-    }
-  }
-  const ConeImpulses found = cone_at_once(problem, begin, settled, way);
-  velocities = free;
-  for (std::size_t k = 0; k < n; ++k) {
-    along[k] = found.impulse.segment<3>(static_cast<Eigen::Index>(3 * k));
-    push_along(blocks_[k], along[k], velocities);
-  }
-  return found.off;
-}
-
 Vector3 ContactSweeps::rate(std::size_t touch, const std::vector<Vector6>& v) const {
   const Block& block = blocks_[touch];
   return block.of_a * v[block.a] + block.of_b * v[block.b];
+}
+
+Vector3 ContactSweeps::rate_of(std::size_t touch, const std::vector<Vector6>& v,
+                               std::span<const Vector3> rates) const {
+  return rate(touch, v) + (rates.empty() ? Vector3::Zero() : rates[touch]);
+}
+
+void ContactSweeps::push_all(std::span<const Vector3> along, std::vector<Vector6>& v) const {
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    push_along(blocks_[k], along[k], v);
+  }
 }
 
 void ContactSweeps::push(std::size_t touch, const Vector3& impulse,

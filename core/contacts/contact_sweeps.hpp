@@ -25,7 +25,8 @@ struct SweptTouch {
 /// Impulses at all touches at once that push and never pull, within the cones of friction, after
 /// which nothing approaches and what is pressed does not part: touch by touch, all others as they
 /// are, again and again [Moreau1988, Jourdan1998]; where that hardly moves, at all touches at once
-/// (`cone_at_once`).
+/// (`cone_at_once`). In a step over many touches it tries what follows if each goes on parting,
+/// sliding or sticking as sweeps have found: one linear system.
 class ContactSweeps {
  public:
   using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -70,9 +71,19 @@ class ContactSweeps {
     Matrix3 W;
     double friction = 0.0;
   };
+  double sweep_once(std::span<const Vector3> rates, bool rubs, double share,
+                    std::vector<Vector3>& along, std::vector<Vector6>& velocities) const;
   double settle_at_once(const std::vector<Vector6>& free, std::span<const Vector3> rates,
                         double settled, bool rubs, AtOnce way, std::vector<Vector3>& along,
                         std::vector<Vector6>& velocities) const;
+  double solve_as_found(const std::vector<Vector6>& free, std::span<const Vector3> rates, bool rubs,
+                        bool anew, std::vector<Vector3>& along,
+                        std::vector<Vector6>& velocities) const;
+  /// What a unit of impulses at one touch does to the rates of another, along their axes.
+  [[nodiscard]] Matrix3 coupling(std::size_t asks, std::size_t gives) const;
+  [[nodiscard]] Vector3 rate_of(std::size_t touch, const std::vector<Vector6>& velocities,
+                                std::span<const Vector3> rates) const;
+  void push_all(std::span<const Vector3> along, std::vector<Vector6>& velocities) const;
   static void push_along(const Block& block, const Vector3& impulse, std::vector<Vector6>& v);
 
   std::vector<Block> blocks_;

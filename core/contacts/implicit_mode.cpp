@@ -1,6 +1,9 @@
 #include "core/contacts/implicit_mode.hpp"
 
 #include "core/contacts/contact_sweeps.hpp"
+#include "core/contacts/least_norm.hpp"
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <limits>
@@ -51,6 +54,52 @@ FrictionChoice choice_of(const Touch& touch, const Vector3& normal, const Vector
   }
   const Vector3 along = impulse - pressed * normal;
   return {Does::slides, along.isZero(0.0) ? along : Vector3(-along.normalized())};
+}
+
+/// Among the points of a pair that all stick, impulses that do the same can be shared in many ways:
+/// here those of least norm, where these push within the cones. What the points do against each
+/// other is nothing at the start of a step, but not in its course, as the bodies turn.
+void share_alike(std::span<const Touch> touches, std::span<const SweptTouch> points,
+                 std::vector<Vector3>& impulses) {
+  const auto sticks = [&](std::size_t k, const Vector3& p) {
+    const Vector3& n = points[k].normal;
+    const double pressed = n.dot(p);
+    return pressed > 0.0 && (p - pressed * n).norm() < points[k].friction * pressed;
+  };
+  std::size_t end = 0;
+  for (std::size_t first = 0; first < touches.size(); first = end) {
+    bool all = true;
+    double reach = 0.0;
+    for (end = first; end < touches.size() && touches[end].pair == touches[first].pair; ++end) {
+      all = all && sticks(end, impulses[end]);
+      reach = std::max(reach, (points[end].point_b - points[first].point_b).norm());
+    }
+    if (!all || !(reach > 0.0)) {
+      continue;
+    }
+    const auto columns = static_cast<Eigen::Index>(3 * (end - first));
+    Eigen::MatrixXd wrench(6, columns);  // a force, and its moment in units of `reach`
+    Eigen::VectorXd now(columns);
+    for (std::size_t k = first; k < end; ++k) {
+      const auto at = static_cast<Eigen::Index>(3 * (k - first));
+      const Vector3 arm = (points[k].point_b - points[first].point_b) / reach;
+      wrench.block<3, 3>(0, at).setIdentity();
+      for (int axis = 0; axis < 3; ++axis) {
+        wrench.block<3, 1>(3, at + axis) = arm.cross(Vector3::Unit(axis));
+      }
+      now.segment<3>(at) = impulses[k];
+    }
+    const Eigen::VectorXd least = least_norm(wrench, wrench * now);
+    const auto share = [&](std::size_t k) {
+      return Vector3(least.segment<3>(static_cast<Eigen::Index>(3 * (k - first))));
+    };
+    for (std::size_t k = first; k < end; ++k) {
+      all = all && sticks(k, share(k));
+    }
+    for (std::size_t k = first; k < end && all; ++k) {
+      impulses[k] = share(k);
+    }
+  }
 }
 
 /// Friction without a bound holds along the surfaces what nothing presses. What parts all the same
@@ -124,6 +173,7 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
     mode.refusal = "impulses of contacts were looked for touch by touch, and did not settle";
     return mode;
   }
+  share_alike(state.touches, touches, swept.impulse);
   mode.flies = true;
   std::vector<Vector6> accelerations;
   for (const Twist& load : state.loads) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 using namespace kairos;
 
@@ -115,6 +116,32 @@ TEST_CASE("implicit step: impulses are within their cones, and take energy from 
     }
     // Some 20 N act at some .05 m/s; what sweeps leave is 1e-10 of both.
     CHECK(work <= 1e-7 * h);
+  }
+}
+
+// Corners that push against each other would turn the body as soon as it moves.
+TEST_CASE("implicit step: corners that stick share alike, whatever they pushed before",
+          "[implicit]") {
+  constexpr std::uint64_t seed = 20261128;
+  CAPTURE(seed);
+  Random random(seed);
+  constexpr double weight = 2.0 * g;
+  const TurningState state = blocks({Vector3::Zero()}, 0.8);
+  for (int trial = 0; trial < 50; ++trial) {
+    // Against each other along both diagonals, and no more than friction holds.
+    const double one = random.uniform(-0.1, 0.1) * weight;
+    const double other = random.uniform(-0.1, 0.1) * weight;
+    std::vector<Vector3> warm;
+    for (const auto& [x, z] : {std::pair{-1.0, -1.0}, {-1.0, 1.0}, {1.0, -1.0}, {1.0, 1.0}}) {
+      const double along = x * z > 0.0 ? one : other;
+      warm.emplace_back(along * x, 0.25 * weight, along * z);
+    }
+    const TurningMode mode = implicit_mode(state, 1e-3, warm);
+    REQUIRE(mode.refusal.empty());
+    for (const Vector3& f : mode.forces.force) {
+      // Sweeps settle to 1e-10 of what the loads do.
+      CHECK((f - Vector3(0.0, 0.25 * weight, 0.0)).norm() <= 1e-8 * weight);
+    }
   }
 }
 
