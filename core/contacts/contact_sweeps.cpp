@@ -19,7 +19,7 @@ constexpr int damped_from = 1000;
 /// Redundant touches that contradict each other by roundoff of where they are cannot settle better
 /// than by this many times that, which is believed up to this many times what counts as settled.
 constexpr double contradiction = 4.0;
-constexpr double most_contradiction = 100.0;
+constexpr double most_contradiction = 1000.0;
 /// Sweeps that change less than this many times what has settled, and do not come to half of that
 /// in so many more, change what rounding does: others would do the same.
 constexpr double nearly_settled = 1e4;
@@ -32,15 +32,20 @@ constexpr std::array ways_of_steps = {AtOnce::newton, AtOnce::newton, AtOnce::ne
 constexpr std::array last_ways_of_steps = {AtOnce::newton, AtOnce::newton, AtOnce::held_along};
 
 /// When sweeps of a step over many touches are helped by linear systems (`solve_as_found`). What
-/// these give is swept on, and taken back if it has not come nearer in the end.
+/// these give is swept on, and taken back if it has not come nearer in the end. What settles is
+/// tried once, too: among redundant touches that slide, the order of a sweep would make a choice.
 class Trial {
  public:
   /// Whether a system is to be solved after this sweep, which changed so much.
   [[nodiscard]] bool is_due(int round, double changed, double settled) const {
     return runs() ? (round - begin_) % solve_every == 0
-                  : trials_ < most_trials && round >= next_ &&
-                        (changed <= nearly_settled * settled || round >= whatever_from);
+                  : trials_ < most_trials &&
+                        ((changed <= settled && is_new()) ||
+                         (round >= next_ &&
+                          (changed <= (is_new() ? roughly_settled : nearly_settled) * settled ||
+                           round >= whatever_from)));
   }
+  [[nodiscard]] bool is_new() const { return trials_ == 0; }
   [[nodiscard]] bool runs() const { return begin_ >= 0; }
   void begin(int round, double changed, const std::vector<Vector3>& along) {
     begin_ = round;
@@ -52,7 +57,7 @@ class Trial {
   /// Whether it is to be taken back: it ended, and changes so much.
   bool in_vain(int round, double changed) {
     begin_ = -1;
-    anew_ = !(changed < changed_);
+    anew_ = !(changed < 0.5 * changed_);
     failed_ += anew_ ? 1 : 0;
     next_ = round + (wait << failed_);
     return anew_;
@@ -68,6 +73,7 @@ class Trial {
   static constexpr int lasts = 48;
   static constexpr int most_trials = 8;
   static constexpr int first = 16;
+  static constexpr double roughly_settled = 1e7;  ///< of `settled`: enough for the first
   static constexpr int wait = 16;             ///< after one in vain twice as long each time
   static constexpr int whatever_from = 1000;  ///< however far from settled
   std::vector<Vector3> along_;
@@ -153,15 +159,15 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
     swept.changed =
         sweep_once(rates, rubs, round < damped_from ? 1.0 : 0.5, along, swept.velocities);
     swept.solves += static_cast<int>(blocks_.size());
-    if (swept.changed <= near_enough) {
-      break;
-    }
     if (trial.ends(round) && trial.in_vain(round, swept.changed)) {
       near_enough = settled;
       swept.changed = trial.changed();
       along = trial.along();
       swept.velocities = velocities;
       push_all(along, swept.velocities);
+    }
+    if (swept.changed <= near_enough && !(many && trial.is_new())) {
+      break;
     }
     if (many && trial.is_due(round, swept.changed, settled)) {
       if (!trial.runs()) {

@@ -26,8 +26,9 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// How often where a patch is pressed is put where the impulse that follows from that asks for.
 constexpr int most_presses = 32;
 
-/// Points of a patch that approach at the same rate to this part land flat.
-constexpr double same_rate = 1e-9;
+/// Points of a patch land flat whose rates are the same to this part, or to that of the speeds.
+constexpr double same_rate = 1e-3;
+constexpr double same_speed = 1e-8;
 
 /// Whether an impulse p goes through the middles of both, to roundoff: then it turns neither.
 bool is_along(const Vector3& p, const Pose& a, const Pose& b) {
@@ -336,7 +337,7 @@ bool EventContacts::strikes_flat(Event& event) {
   }
   // What an impact hands on to and fro has the roundoff of the speeds, not of what is left of it.
   const double alike = std::max(same_rate * std::abs(approach),
-                                std::min(same_rate * speeds, 0.1 * std::abs(approach)));
+                                std::min(same_speed * speeds, 0.1 * std::abs(approach)));
   for (std::size_t k = 0; k < manifold.size; ++k) {
     if (!(rate(0) < 0.0) || std::abs(rate(k) - rate(0)) > alike) {
       return false;
