@@ -74,8 +74,8 @@ class Trial {
   static constexpr int most_trials = 8;
   static constexpr int first = 16;
   static constexpr double roughly_settled = 1e7;  ///< of `settled`: enough for the first
-  static constexpr int wait = 16;             ///< after one in vain twice as long each time
-  static constexpr int whatever_from = 1000;  ///< however far from settled
+  static constexpr int wait = 16;                 ///< after one in vain twice as long each time
+  static constexpr int whatever_from = 1000;      ///< however far from settled
   std::vector<Vector3> along_;
   double changed_ = 0.0;
   bool anew_ = true;

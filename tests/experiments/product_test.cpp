@@ -45,10 +45,10 @@ std::vector<MethodChoice> product() {
   return choices;
 }
 
-/// Which of `turns` scenes in a row has a combination to run.
-std::size_t turn_of(std::size_t combination, std::size_t turns) {
+/// Which of so many scenes in a row has a combination to run.
+std::size_t turn_of(std::size_t combination, std::size_t scenes) {
   // Fibonacci hashing (Knuth, The Art of Computer Programming 3, 6.4): neighbours have other turns.
-  return static_cast<std::size_t>((combination * 0x9e3779b97f4a7c15ULL) >> 32U) % turns;
+  return static_cast<std::size_t>((combination * 0x9e3779b97f4a7c15ULL) >> 32U) % scenes;
 }
 
 enum class Fate { completed, stopped, refused, wrong };
@@ -88,7 +88,7 @@ Walk walk(const Model& model, const MethodChoice& method, double duration) {
 TEST_CASE("every combination on the shipped scenes runs or is refused with a reason",
           "[product][slow]") {
   const bool whole = std::getenv("KAIROS_WHOLE_PRODUCT") != nullptr;
-  const std::size_t turns = whole ? 1 : 4;
+  const std::size_t every = whole ? 1 : 4;
   const std::vector<MethodChoice> choices = product();
   REQUIRE(choices.size() >= 5 * 8 * 4 * 2);
   REQUIRE_FALSE(shipped_scenes().empty());
@@ -97,11 +97,11 @@ TEST_CASE("every combination on the shipped scenes runs or is refused with a rea
     const Model model(read_scene(find_scene(name)));
     std::vector<std::size_t> mine;
     for (std::size_t i = 0; i < choices.size(); ++i) {
-      if (turn_of(i, turns) == turn) {
+      if (turn_of(i, every) == turn) {
         mine.push_back(i);
       }
     }
-    turn = (turn + 1) % turns;
+    turn = (turn + 1) % every;
     std::vector<Walk> walks(mine.size());
     // Methods of low order take thousands of steps to keep what turns in touch: there one frame,
     // and laws of impact and detectors with `auto` alone, for they have no part in that.
