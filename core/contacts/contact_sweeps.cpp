@@ -19,7 +19,7 @@ constexpr int damped_from = 1000;
 /// Redundant touches that contradict each other by roundoff of where they are cannot settle better
 /// than by this many times that, which is believed up to this many times what counts as settled.
 constexpr double contradiction = 4.0;
-constexpr double most_contradiction = 1000.0;
+constexpr double most_contradiction = 100.0;
 /// Sweeps that change less than this many times what has settled, and do not come to half of that
 /// in so many more, change what rounding does: others would do the same.
 constexpr double nearly_settled = 1e4;
@@ -42,8 +42,7 @@ class Trial {
                   : trials_ < most_trials &&
                         ((changed <= settled && is_new()) ||
                          (round >= next_ &&
-                          (changed <= (is_new() ? roughly_settled : nearly_settled) * settled ||
-                           round >= whatever_from)));
+                          (changed <= nearly_settled * settled || round >= whatever_from)));
   }
   [[nodiscard]] bool is_new() const { return trials_ == 0; }
   [[nodiscard]] bool runs() const { return begin_ >= 0; }
@@ -57,7 +56,7 @@ class Trial {
   /// Whether it is to be taken back: it ended, and changes so much.
   bool in_vain(int round, double changed) {
     begin_ = -1;
-    anew_ = !(changed < 0.5 * changed_);
+    anew_ = !(changed < changed_);
     failed_ += anew_ ? 1 : 0;
     next_ = round + (wait << failed_);
     return anew_;
@@ -73,9 +72,8 @@ class Trial {
   static constexpr int lasts = 48;
   static constexpr int most_trials = 8;
   static constexpr int first = 16;
-  static constexpr double roughly_settled = 1e7;  ///< of `settled`: enough for the first
-  static constexpr int wait = 16;                 ///< after one in vain twice as long each time
-  static constexpr int whatever_from = 1000;      ///< however far from settled
+  static constexpr int wait = 16;             ///< after one in vain twice as long each time
+  static constexpr int whatever_from = 1000;  ///< however far from settled
   std::vector<Vector3> along_;
   double changed_ = 0.0;
   bool anew_ = true;

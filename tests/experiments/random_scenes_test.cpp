@@ -324,7 +324,6 @@ TEST_CASE("scenes with friction that stopped once", "[random]") {
   for (const auto& [of_seed, index] : {std::pair(20261201, 13),
                                        {20261202, 90},
                                        {20261202, 206},
-                                       {20261201, 36},
                                        {20261202, 343},
                                        {20261201, 262},
                                        {20261128, 26}}) {
