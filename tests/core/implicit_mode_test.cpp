@@ -145,6 +145,31 @@ TEST_CASE("implicit step: corners that stick share alike, whatever they pushed b
   }
 }
 
+// Four corners that slide can carry the same in many ways, of which the order of a sweep chose one.
+TEST_CASE("implicit step: over many touches mirrored corners that slide carry alike",
+          "[implicit]") {
+  constexpr std::uint64_t seed = 20261128;
+  CAPTURE(seed);
+  Random random(seed);
+  constexpr double h = 1e-3;
+  constexpr double weight = 2.0 * g;
+  for (int trial = 0; trial < 20; ++trial) {
+    const double mu = random.uniform(0.05, 0.4);  // at 0.5 they tip over
+    const double speed = random.uniform(0.1, 3.0);
+    const std::vector<Vector3> velocities(12, Vector3(speed, 0.0, 0.0));
+    const TurningState state = blocks(velocities, mu);
+    const TurningMode mode = implicit_mode(state, h, {});
+    REQUIRE(mode.refusal.empty());
+    // Sweeps settle to 1e-10 of what the loads do.
+    for (std::size_t i = 1; i <= velocities.size(); ++i) {
+      CHECK(std::abs(after(mode, i, h).linear.x() - (speed - mu * g * h)) <= 1e-8 * g * h);
+    }
+    for (std::size_t k = 0; k < state.touches.size(); k += 2) {  // z = -0.1, then 0.1
+      CHECK((mode.forces.force[k] - mode.forces.force[k + 1]).norm() <= 1e-8 * weight);
+    }
+  }
+}
+
 // In a step this short the loads do less than rounding: what a sweep still changes is noise.
 TEST_CASE("implicit step: what changes by rounding alone has settled", "[implicit]") {
   constexpr std::uint64_t seed = 20261125;
