@@ -46,12 +46,10 @@ struct FirstDescent {
 /// and roots so far away that the errors of the coefficients have grown large.
 template <typename Gap>
 [[nodiscard]] double last_proven(const Gap& gap, double low, double high) {
-  for (int i = 0; i < 100; ++i) {
-    const double middle = low + 0.5 * (high - low);
-    if (!(middle > low && middle < high)) {
-      break;
-    }
+  double middle = low + 0.5 * (high - low);
+  while (middle > low && middle < high) {  // roots may be 1e48 s away, and errors large long before
     (gap(middle) > gap.error(middle) ? low : high) = middle;
+    middle = low + 0.5 * (high - low);
   }
   return low;
 }

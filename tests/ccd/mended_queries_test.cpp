@@ -156,6 +156,20 @@ TEST_CASE("mended: a slightly tilted half-space is unbounded to every side", "[c
   CHECK(behind.lower.x() == -ccd::infinity);
 }
 
+TEST_CASE("mended: a ball that closes in by roundoff of a speed is apart, not undecided",
+          "[ccd][mended]") {
+  // It flies along a tilted plane; what is left of its speed towards it is 1e-20 to 1e-300 m/s.
+  const Vector3 n(0.46588655069068374, 0, -0.8848444619737059);
+  for (double closing = 1e-20; closing > 1e-300; closing *= 1e-7) {
+    const Query q{Sphere{1.1}, HalfSpace{n},
+                  moving(pose({8.1, 1.1, -10.3}), {-closing, 1.33, 0}, zero, {0, -9.8, 0}),
+                  still(pose(zero)), 1.0};
+    const TimeOfImpact toi = q.ask(*certified);
+    CAPTURE(closing);
+    CHECK(toi.status == ToiStatus::separated);
+  }
+}
+
 TEST_CASE("mended: a half-space that turns carries what is far from its origin", "[ccd][mended]") {
   // A box 0.1 m deep in the ground, 1000 m from where the ground turns at 1e-3 rad/s: 1 m/s there.
   const Query q{box(0.5, 0.5, 0.5), HalfSpace{}, still(pose({1000, 0.4, 0})),

@@ -237,6 +237,11 @@ EventAccumulation::Finding EventAccumulation::conclude(BodyIndex a, BodyIndex b,
   return {};
 }
 
+bool EventAccumulation::on_no_way(BodyIndex a, BodyIndex b) const {
+  const auto of = [&](BodyIndex i) { return run_.model.is_free(i) && histories_[i].on_no_way(); };
+  return of(a) || of(b);
+}
+
 bool EventAccumulation::stalls(BodyIndex a, BodyIndex b, Instant t, double resolution) {
   return histories_[run_.model.is_free(a) ? a : b].stalls(t, resolution);
 }

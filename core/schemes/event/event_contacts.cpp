@@ -246,7 +246,7 @@ void EventContacts::touch(BodyIndex a, BodyIndex b, const Contact& contact, Inst
     return;
   }
   if (accumulation_.stalls(a, b, t, least_progress * run_.epoch())) {
-    if (settle_stalled(pair, t)) {
+    if (settle_stalled(pair, t) || leave_alone(a, b, t)) {
       return;
     }
     if (const double until = comes_together(a, b, t, bracket); until > 0.0) {
@@ -315,7 +315,8 @@ void EventContacts::look_again(BodyIndex a, BodyIndex b, Instant t, double brack
   const double window = std::min({motions_.of(a).duration, motions_.of(b).duration, run_.epoch()});
   if (accumulation_.stalls(a, b, t, least_progress * window)) {
     const std::array<BodyIndex, 2> pair{a, b};
-    if (settle_stalled(pair, t) || meet_elsewhere(a, b, t) || end_by_pushing(pair, 0.0, t)) {
+    if (settle_stalled(pair, t) || meet_elsewhere(a, b, t) || leave_alone(a, b, t) ||
+        end_by_pushing(pair, 0.0, t)) {
       return;
     }
     return run_.stop(t, fmt::format("accumulation: whether {} touch is undecided again and again, "

@@ -81,6 +81,7 @@ class EventContacts {
                                                             const BodyInertia& inertia_b) const;
   [[nodiscard]] bool strikes_flat(Event& event);
   void press_together(Event& event, const ContactManifold& manifold);
+  [[nodiscard]] double roundoff(const Contact& contact, BodyIndex a, BodyIndex b) const;
   [[nodiscard]] double no_approach(const Contact& contact, BodyIndex a, BodyIndex b,
                                    double bracket) const;
   [[nodiscard]] bool still_approaching(const Event& event, double approach, Instant t);
@@ -116,6 +117,7 @@ class EventContacts {
   [[nodiscard]] Contact contact_at(BodyIndex a, BodyIndex b, Instant t, double bracket) const;
   void look_again(BodyIndex a, BodyIndex b, Instant t, double bracket);
   [[nodiscard]] double passes_by(BodyIndex a, BodyIndex b, Instant t) const;
+  [[nodiscard]] bool leave_alone(BodyIndex a, BodyIndex b, Instant t);
   [[nodiscard]] double comes_together(BodyIndex a, BodyIndex b, Instant t, double bracket) const;
   void touch(BodyIndex a, BodyIndex b, const Contact& contact, Instant t, double bracket);
   [[nodiscard]] bool lands(BodyIndex a, BodyIndex b, const Contact& contact, Instant t);

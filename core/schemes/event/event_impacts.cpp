@@ -3,6 +3,7 @@
 #include "core/contacts/group_law.hpp"
 #include "core/impact_check.hpp"
 #include "core/point_law.hpp"
+#include "core/schemes/event/draws_apart.hpp"
 #include "core/schemes/event/event_contacts.hpp"
 #include "core/schemes/event/slides_past.hpp"
 
@@ -107,6 +108,27 @@ double EventContacts::passes_by(BodyIndex a, BodyIndex b, Instant t) const {
                      {run_.model.shape(b), of_b.motion()}, motions_.now(b), t);
 }
 
+/// Whether two that touch, and would meet at this instant for ever, draw apart where their patch
+/// is: they are asked about again later.
+bool EventContacts::leave_alone(BodyIndex a, BodyIndex b, Instant t) {
+  const auto moving_a = motions_.moving(a);
+  const auto moving_b = motions_.moving(b);
+  const MovingShape of_a{run_.model.shape(a), moving_a.motion()};
+  const MovingShape of_b{run_.model.shape(b), moving_b.motion()};
+  const ContactManifold m =
+      run_.detector.manifold(of_a.shape, motions_.now(a).pose, of_b.shape, motions_.now(b).pose,
+                             predictor_.touching_gap(a, b));
+  if (m.size == 0) {
+    return false;
+  }
+  const double d =
+      std::max(draws_apart(of_a, of_b, m.normal, t), draws_apart(of_b, of_a, -m.normal, t));
+  if (d > 0.0) {
+    run_.agenda.push(t + d, DueKind::recheck, a, b);
+  }
+  return d > 0.0;
+}
+
 void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double bracket, bool decided) {
   if (impact_of_balls(a, b, t, bracket)) {
     return;
@@ -133,7 +155,9 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double bracket, 
     // A body that continues as another image must be launched before it is asked about again.
     return moved ? relaunch(a, b, t) : look_again(a, b, t, bracket);
   }
-  if (approach >= 0.0 && run_.law.info().needs_contact) {
+  // What is struck on no way at all may be struck by what is left of its speed, without end.
+  const double none = accumulation_.on_no_way(a, b) ? roundoff(event.contact, a, b) : 0.0;
+  if (approach >= -none && run_.law.info().needs_contact) {
     return touch(a, b, event.contact, t, bracket);
   }
   if (const double past = moved ? 0.0 : passes_by(a, b, t); past > 0.0) {
@@ -154,21 +178,27 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double bracket, 
   meet(event, t);
 }
 
-/// An approach below this, m/s, of which the detector does not prove that it leads anywhere, is
-/// none: it is roundoff of what it is a sum of, and the way of a whole bracket is roundoff of a
-/// gap.
-double EventContacts::no_approach(const Contact& contact, BodyIndex a, BodyIndex b,
-                                  double bracket) const {
+/// An approach below this, m/s, is roundoff of what it is a sum of.
+double EventContacts::roundoff(const Contact& contact, BodyIndex a, BodyIndex b) const {
   double rates = 0.0;
-  double sizes = 0.0;
   for (const BodyIndex i : {a, b}) {
     const BodyState& state = motions_.now(i);
     const double arm = (contact.point - state.pose.position).lpNorm<1>();
-    sizes += arm;
     rates += contact.normal.cwiseAbs().dot(state.twist.linear.cwiseAbs()) +
              state.twist.angular.norm() * (arm + state.pose.position.lpNorm<Eigen::Infinity>());
   }
-  return std::min(64.0 * epsilon * rates, epsilon * sizes / bracket);
+  return 64.0 * epsilon * rates;
+}
+
+/// An approach below this, m/s, of which the detector does not prove that it leads anywhere, is
+/// none: it is roundoff, and the way of a whole bracket is roundoff of a gap.
+double EventContacts::no_approach(const Contact& contact, BodyIndex a, BodyIndex b,
+                                  double bracket) const {
+  double sizes = 0.0;
+  for (const BodyIndex i : {a, b}) {
+    sizes += (contact.point - motions_.now(i).pose.position).lpNorm<1>();
+  }
+  return std::min(roundoff(contact, a, b), epsilon * sizes / bracket);
 }
 
 /// Two bodies that approach each other strike, and with them those that they touch.

@@ -70,15 +70,26 @@ bool EventModes::rattles(BodyIndex i) const {
 }
 
 /// Below this speed along the normal the forces that press allow no hop above the tolerance, m/s:
-/// of what rattles, above half of what counts as touch.
+/// of what rattles, above half of what counts as touch. A light body that rattles under a heavy one
+/// on what returns all of its speed hops until the heavy one has come down on it; gaps are no
+/// smaller than they must be to be held, so that it would never come down.
 double EventModes::rest_speed(BodyIndex a, BodyIndex b, const BodyState& at_a,
                               const BodyState& at_b, const SettleOptions& options) const {
   const double e = run_.model.restitution(a, b);
   double tolerance = accumulation_.rest_tolerance(a, b, e);
-  if (e < 1.0 && (rattles(a) || rattles(b))) {
+  const bool rattling = rattles(a) || rattles(b);
+  if (rattling) {
     tolerance = std::max(tolerance, 0.5 * predictor_.touching_gap(a, b));
   }
+  const auto accelerated = [this](BodyIndex i) {
+    const auto moving = motions_.moving(i);
+    const Motion& motion = moving.motion();
+    return motion.acceleration(std::min(run_.time - motion.start, motion.duration)).norm();
+  };
   double pressing = load(a, at_a).linear.norm() + load(b, at_b).linear.norm();
+  if (rattling) {
+    pressing += accelerated(a) + accelerated(b);  // by what lies on it, too
+  }
   double speeds = at_a.twist.linear.norm() + at_b.twist.linear.norm();
   for (const auto& [i, state] : {std::pair{a, &at_a}, std::pair{b, &at_b}}) {
     const double turns = state->twist.angular.squaredNorm();
@@ -90,10 +101,8 @@ double EventModes::rest_speed(BodyIndex a, BodyIndex b, const BodyState& at_a,
     // Joints and springs press, too, and pass on what is roundoff of the fastest; as where hops are
     // judged.
     for (const BodyIndex i : {a, b}) {
-      const auto moving = motions_.moving(i);
-      const Motion& motion = moving.motion();
       const double turns = (i == a ? at_a : at_b).twist.angular.squaredNorm();
-      pressing += motion.acceleration(std::min(run_.time - motion.start, motion.duration)).norm();
+      pressing += accelerated(i);
       pressing += turns > 0.0 ? turns * bounding_radius(run_.model.shape(i)) : 0.0;
       for (const BodyIndex k : hangs(i) ? motions_.island(i) : std::vector<BodyIndex>()) {
         const Twist v = motions_.at(k, run_.time).twist;
@@ -227,6 +236,12 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
             normal_velocity({manifold.points[p].position, manifold.normal, 0.0}, at_a, at_b);
         least = std::min(least, rate);
         most = std::max(most, rate);
+      }
+      if (options.turning && least > slow && manifold.size == 1) {
+        // The normal where edges cross may not be that of a face nearby.
+        const Overlap o =
+            run_.detector.overlap(run_.model.shape(a), at_a.pose, run_.model.shape(b), at_b.pose);
+        least = normal_velocity({o.point, o.normal, 0.0}, at_a, at_b);
       }
       const bool struck = options.impact && is_seed(a) && is_seed(b);
       const bool elsewhere =
