@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -58,8 +59,8 @@ struct Bounds {
 
 /// One plane, and the corners that are to stay beyond it.
 struct Candidate {
-  std::vector<TouchFeature> corners_a;
-  std::vector<TouchFeature> corners_b;
+  std::vector<std::size_t> corners_a;  ///< of the pair's, those that are to be on one side
+  std::vector<std::size_t> corners_b;
   const TouchFeature* plane = nullptr;  ///< of a face
   bool of_a = false;
   const Touch* touch = nullptr;  ///< or through it
@@ -125,14 +126,15 @@ class Watcher {
     const auto& corners = of_a ? watch_.pair.corners_b : watch_.pair.corners_a;
     auto& mine = of_a ? c.corners_b : c.corners_a;
     double arm = 0.0;
-    for (const TouchFeature& corner : corners) {
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const TouchFeature& corner = corners[k];
       const bool is_held =
           but_held && std::any_of(watch_.held.begin(), watch_.held.end(), [&](const Touch& touch) {
             const TouchFeature& face = of_a ? touch.on_a : touch.on_b;
             return face.kind == Kind::plane && belongs(corner, of_a ? touch.on_b : touch.on_a);
           });
       if (!is_held) {
-        mine.push_back(corner);
+        mine.push_back(k);
         arm = std::max(arm, reach(corner));
       }
     }
@@ -154,16 +156,15 @@ class Watcher {
         pair.corners_b.empty()) {
       return;
     }
-    const BodyState a{watch_.motion_a.pose(0.0), {}};
-    const BodyState b{watch_.motion_b.pose(0.0), {}};
+    const Placed at(*this, 0.0);
     double best = 0.0;
     const auto is_best = [&](const TouchFeature* face, bool of_a, const Touch* edges) {
-      const Candidate c{.corners_a = pair.corners_a,
-                        .corners_b = pair.corners_b,
+      const Candidate c{.corners_a = all_of(pair.corners_a),
+                        .corners_b = all_of(pair.corners_b),
                         .plane = face,
                         .of_a = of_a,
                         .touch = edges};
-      const double h = height(c, a, b);
+      const double h = height(c, at);
       best = std::max(best, h);
       return h == best && h > 0.0;
     };
@@ -176,7 +177,7 @@ class Watcher {
         }
       }
     }
-    for (const Touch& edges : crossing_edges(a.pose, b.pose)) {
+    for (const Touch& edges : crossing_edges(at.a.pose, at.b.pose)) {
       if (is_best(nullptr, false, &edges)) {
         spare_edges_ = edges;
         found = Spare::edges;
@@ -249,16 +250,18 @@ class Watcher {
     c.touch = &touch;
     double arm_a = reach(touch.on_a);
     double arm_b = reach(touch.on_b);
-    for (const TouchFeature& corner : watch_.pair.corners_a) {
+    for (std::size_t k = 0; k < watch_.pair.corners_a.size(); ++k) {
+      const TouchFeature& corner = watch_.pair.corners_a[k];
       arm_a = std::max(arm_a, reach(corner));
       if (!is_held || !belongs(corner, touch.on_a)) {
-        c.corners_a.push_back(corner);
+        c.corners_a.push_back(k);
       }
     }
-    for (const TouchFeature& corner : watch_.pair.corners_b) {
+    for (std::size_t k = 0; k < watch_.pair.corners_b.size(); ++k) {
+      const TouchFeature& corner = watch_.pair.corners_b[k];
       arm_b = std::max(arm_b, reach(corner));
       if (!is_held || !belongs(corner, touch.on_b)) {
-        c.corners_b.push_back(corner);
+        c.corners_b.push_back(k);
       }
     }
     const double speeds = a_.speed + b_.speed + arm_a * a_.turning + arm_b * b_.turning;
@@ -283,35 +286,64 @@ class Watcher {
     candidates_.push_back(std::move(c));
   }
 
-  [[nodiscard]] double height(const Candidate& c, const BodyState& a, const BodyState& b) const {
-    const auto lowest = [](const std::vector<TouchFeature>& corners, const Pose& pose,
-                           const Vector3& n, const Vector3& q) {
-      double least = infinity;
-      for (const TouchFeature& corner : corners) {
-        least = std::min(least, n.dot(pose.to_world(corner.at) - q) - corner.radius);
+  /// The two at s, and where all their corners are: planes ask for the same ones.
+  struct Placed {
+    BodyState a;
+    BodyState b;
+    std::vector<Vector3> corners_a;
+    std::vector<Vector3> corners_b;
+
+    Placed(const Watcher& of, double s)
+        : a{of.watch_.motion_a.pose(s), {}}, b{of.watch_.motion_b.pose(s), {}} {
+      for (const TouchFeature& corner : of.watch_.pair.corners_a) {
+        corners_a.push_back(a.pose.to_world(corner.at));
       }
-      return least;
-    };
+      for (const TouchFeature& corner : of.watch_.pair.corners_b) {
+        corners_b.push_back(b.pose.to_world(corner.at));
+      }
+    }
+  };
+
+  [[nodiscard]] static std::vector<std::size_t> all_of(const std::vector<TouchFeature>& corners) {
+    std::vector<std::size_t> all(corners.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return all;
+  }
+
+  /// How far the lowest of these corners is above the plane through q with this normal, m.
+  [[nodiscard]] static double lowest(const std::vector<std::size_t>& which,
+                                     const std::vector<TouchFeature>& corners,
+                                     const std::vector<Vector3>& placed, const Vector3& n,
+                                     const Vector3& q) {
+    double least = infinity;
+    for (const std::size_t k : which) {
+      least = std::min(least, n.dot(placed[k] - q) - corners[k].radius);
+    }
+    return least;
+  }
+
+  [[nodiscard]] double height(const Candidate& c, const Placed& at) const {
+    const TurningPair& pair = watch_.pair;
     if (c.plane != nullptr) {
-      const Pose& carrier = c.of_a ? a.pose : b.pose;
+      const Pose& carrier = c.of_a ? at.a.pose : at.b.pose;
       const Vector3 n = carrier.orientation * c.plane->direction;
-      return lowest(c.of_a ? c.corners_b : c.corners_a, c.of_a ? b.pose : a.pose, n,
-                    carrier.to_world(c.plane->at));
+      const Vector3 q = carrier.to_world(c.plane->at);
+      return c.of_a ? lowest(c.corners_b, pair.corners_b, at.corners_b, n, q)
+                    : lowest(c.corners_a, pair.corners_a, at.corners_a, n, q);
     }
     // Along the normal of a touch no corner of a is above any of b: what touches has the gap, which
     // is held.
-    const TouchNow now = look_at(*c.touch, a, b);
-    const double of_a = lowest(c.corners_a, a.pose, -now.normal, now.point_a);
-    const double of_b = lowest(c.corners_b, b.pose, now.normal, now.point_b);
+    const TouchNow now = look_at(*c.touch, at.a, at.b);
+    const double of_a = lowest(c.corners_a, pair.corners_a, at.corners_a, -now.normal, now.point_a);
+    const double of_b = lowest(c.corners_b, pair.corners_b, at.corners_b, now.normal, now.point_b);
     return now.gap + std::min({of_a, of_b, of_a + of_b});
   }
 
   [[nodiscard]] std::vector<double> heights(double s) const {
-    const BodyState a{watch_.motion_a.pose(s), {}};
-    const BodyState b{watch_.motion_b.pose(s), {}};
+    const Placed at(*this, s);
     std::vector<double> out;
     for (const Candidate& c : candidates_) {
-      out.push_back(height(c, a, b));
+      out.push_back(height(c, at));
     }
     return out;
   }

@@ -370,8 +370,7 @@ class Step {
   }
 
   /// Whether something is held beyond the rim of what it is on: by more than roundoff, so that it
-  /// is known to be beyond, and by twice what it was, so that what the detector finds in touch a
-  /// little beyond its rim takes few steps until it does not.
+  /// is known to be beyond, and by more than it was.
   [[nodiscard]] bool rim(const TurningState& state) const {
     for (std::size_t k = 0; k < state.touches.size(); ++k) {
       const Touch& touch = state.touches[k];
@@ -383,7 +382,7 @@ class Step {
         const auto& start = group_.start.states;
         const double before = rim.beyond(touch, start[touch.a], start[touch.b]);
         if (rim.beyond(touch, state.states[touch.a], state.states[touch.b]) >
-            std::max(2.0 * before, 0.0) + over_rim * size) {
+            std::max(before, 0.0) + over_rim * size) {
           return true;
         }
       }

@@ -237,8 +237,8 @@ EventAccumulation::Finding EventAccumulation::conclude(BodyIndex a, BodyIndex b,
   return {};
 }
 
-bool EventAccumulation::on_no_way(BodyIndex a, BodyIndex b) const {
-  const auto of = [&](BodyIndex i) { return run_.model.is_free(i) && histories_[i].on_no_way(); };
+bool EventAccumulation::creep(BodyIndex a, BodyIndex b) const {
+  const auto of = [&](BodyIndex i) { return run_.model.is_free(i) && histories_[i].creeps(); };
   return of(a) || of(b);
 }
 

@@ -40,8 +40,8 @@ class EventAccumulation {
     bool goes_on = false;           ///< the impacts may go on for now
     bool endless = false;           ///< they did so for long, and got nowhere
   };
-  /// Whether the last impact of one of the two followed another on no way at all.
-  [[nodiscard]] bool on_no_way(BodyIndex a, BodyIndex b) const;
+  /// Whether very many impacts of one of the two followed each other on no way at all.
+  [[nodiscard]] bool creep(BodyIndex a, BodyIndex b) const;
   /// An impact that met at `approach`, m/s, left the two at `now`.
   [[nodiscard]] Finding after_impact(BodyIndex a, BodyIndex b, double approach, Instant t);
 

@@ -215,7 +215,8 @@ class EventModes {
                          const Adopt& adopt);
   void book_lift(const Gathered& found, Instant t);
   void carry_on(const Gathered& found, const Turning& turning, Instant t, const Adopt& adopt);
-  void end_together(const Gathered& found, const FlatMode& mode, Instant end, bool strikes);
+  void end_together(const Gathered& found, const FlatMode& mode, Instant end,
+                    const BodyPair* strikes);
   [[nodiscard]] bool settle_driven(Gathered found, Instant t, const Adopt& adopt);
   [[nodiscard]] std::vector<Change> join_and_part(const Gathered& found, const FlatMode& mode,
                                                   Instant t);

@@ -701,20 +701,25 @@ void EventModes::carry_on(const Gathered& found, const Turning& turning, Instant
     const auto& [a, b] = found.pairs[turning.step.pair];
     run_.agenda.push(end, DueKind::impact, a, b, 0.0, true);
   }
-  end_together(found, mode, end, strikes);
+  end_together(found, mode, end, strikes ? &found.pairs[turning.step.pair] : nullptr);
 }
 
-/// What hangs together is looked at again at `end`. Where a strike ends the step that comes first:
-/// what began anew before would begin all that is near it anew, and the strike with it. It may
-/// never come: the two may have been struck by others before.
+/// What hangs together is looked at again at `end`. Where a strike ends the step that comes first,
+/// and is the end of those that it concerns. It may never come: what is held by neither may have
+/// been struck by others before.
 void EventModes::end_together(const Gathered& found, const FlatMode& mode, Instant end,
-                              bool strikes) {
+                              const BodyPair* strikes) {
+  std::vector<BodyIndex> struck;
+  if (strikes != nullptr) {
+    struck = group(std::array{strikes->first, strikes->second});
+  }
   std::vector<BodyIndex> told;
   for (std::size_t p = 0; p < found.pairs.size(); ++p) {
     const auto& [a, b] = found.pairs[p];
     const BodyIndex free = run_.model.is_free(a) ? a : b;
     if (mode.kept[p] != 0 && std::find(told.begin(), told.end(), free) == told.end()) {
-      run_.agenda.push(end, strikes ? DueKind::step_ends : DueKind::mode_ends, a, b);
+      const bool after = std::find(struck.begin(), struck.end(), free) != struck.end();
+      run_.agenda.push(end, after ? DueKind::step_ends : DueKind::mode_ends, a, b);
       for (const BodyIndex k : group(std::array{a, b})) {
         told.push_back(k);
       }
