@@ -320,14 +320,14 @@ TEST_CASE("scenes with friction break no promise, and every stop says what to do
 
 TEST_CASE("scenes with friction that stopped once", "[random]") {
   // Light balls between heavy ones and boxes, whose collapses light bodies hand on and on; boxes
-  // that rattle in touch; a stop of a slide that leaves 2e-23 m/s; a light box that rattles under a
-  // heavy one on a floor that returns all of its speed; a strike that was begun anew before it
-  // came; balls struck by the roundoff of their speeds; corners that part, and no detector can
-  // tell.
+  // that rattle in touch; a stop of a slide that leaves 2e-23 m/s; light boxes that rattle under
+  // heavy ones on a floor that returns all of their speed; edges that cross at a face which is
+  // hardly tilted; balls struck by the roundoff of their speeds; corners that part where no
+  // detector can tell.
   for (const auto& [of_seed, index] : {std::pair(20261201, 13),
                                        {20261204, 86},
                                        {20261204, 149},
-                                       {20261203, 188},
+                                       {20261202, 220},
                                        {20261202, 173},
                                        {20261204, 260},
                                        {20261202, 90},
