@@ -50,8 +50,8 @@ struct Way {
       rounding += roundoff * moving->motion.pose(s).position.norm();
     }
     rounding += roundoff * radii;
-    const double around =
-        2.0 * turning * radii;  // a point of the one about the middle of the other
+    // Of a point of the one about the middle of the other.
+    const double around = 2.0 * turning * radii;
     curvature += turning * (2.0 * speed + around);
     speed += around;
   }

@@ -14,7 +14,8 @@ inline namespace core {
 /// n: a normal that points from `own` to `other`. A plane that turns with `own` separates them at
 /// the beginning and at the end. Seen from `own` the points of the other move nearly straight on,
 /// and how far the nearest of them is from the plane is then a concave function of time: the plane
-/// separates them in between, too. What they curve in that time is less than rounding.
+/// separates them in between, too. What they curve in that time is less than rounding. What motions
+/// may be off by (their error radii) is left out.
 [[nodiscard]] double draws_apart(const MovingShape& own, const MovingShape& other, const Vector3& n,
                                  Instant t);
 

@@ -109,8 +109,11 @@ double EventContacts::passes_by(BodyIndex a, BodyIndex b, Instant t) const {
 }
 
 /// Whether two that touch, and would meet at this instant for ever, draw apart where their patch
-/// is: they are asked about again later.
+/// is: they are asked about again later. What goes on as an image is launched anew instead.
 bool EventContacts::leave_alone(BodyIndex a, BodyIndex b, Instant t) {
+  if (run_.model.scene().periodic) {
+    return false;
+  }
   const auto moving_a = motions_.moving(a);
   const auto moving_b = motions_.moving(b);
   const MovingShape of_a{run_.model.shape(a), moving_a.motion()};
