@@ -1,26 +1,13 @@
 #pragma once
 
+#include "core/contacts/cone_problem.hpp"
+
 #include <Eigen/Core>
 
-#include <vector>
+#include <cstddef>
 
 namespace kairos {
 inline namespace core {
-
-/// Impulses p at all touches at once: u = W p + q with, by touch, 0 <= u_n, 0 <= p_n, u_n p_n = 0,
-/// |p_t| <= mu p_n, and p_t against u_t where that is not 0.
-struct ConeProblem {
-  Eigen::MatrixXd W;             ///< 3 by touch, symmetric, positive semidefinite, 1/kg
-  Eigen::VectorXd q;             ///< rates without impulses, m/s: normal, then two tangents
-  std::vector<double> friction;  ///< by touch, >= 0; infinite: rough
-  bool holds_along = false;      ///< what is rough has u_t = 0 and any p_t, pressed or not
-};
-
-/// Impulses, and what they are off.
-struct ConeImpulses {
-  Eigen::VectorXd impulse;  ///< N s, 3 by touch
-  double off = 0.0;         ///< m/s: of velocities, or of what impulses do alone; 0: all is kept
-};
 
 /// Newton's method on the projections onto the cones, which are differentiable in pieces
 /// [AlartCurnier1991]; of the steps that are as good the shortest, as touches may be redundant. It
@@ -39,12 +26,15 @@ struct ConeImpulses {
 [[nodiscard]] ConeImpulses cone_proximal(const ConeProblem& problem, const Eigen::VectorXd& begin,
                                          double settled);
 
-/// Newton's method alone pays with so many touches at most, and any of this with so many.
+/// Newton's method alone pays with so many touches at most, proximal points with so many, and any
+/// of this with so many.
 constexpr std::size_t most_for_newton = 32;
-constexpr std::size_t most_at_once = 64;
+constexpr std::size_t most_for_proximal = 64;
+constexpr std::size_t most_at_once = 160;
 /// Ways to look for impulses at all touches at once.
 enum class AtOnce {
   newton,      ///< Newton's method, where touches are few
+  admm,        ///< `cone_admm`
   proximal,    ///< the proximal points
   bounded,     ///< these with friction of 100 where touches are rough, as what is hardly pressed
                ///< and has no bound may be held by nothing at all

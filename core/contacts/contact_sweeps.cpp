@@ -24,12 +24,13 @@ constexpr double most_contradiction = 100.0;
 /// in so many more, change what rounding does: others would do the same.
 constexpr double nearly_settled = 1e4;
 constexpr int idle_sweeps = 64;
-/// What has not settled after so many sweeps is looked for at all touches at once, and after four
-/// and sixteen times as many again, in these ways; steps, which come often, have the first only.
+/// What has not settled after so many sweeps is looked for at all touches at once, and after four,
+/// sixteen and 64 times as many again, in these ways; steps, which come often, have the first ones.
 constexpr int at_once_after = 64;
-constexpr std::array ways_of_impacts = {AtOnce::newton, AtOnce::proximal, AtOnce::bounded};
-constexpr std::array ways_of_steps = {AtOnce::newton, AtOnce::newton, AtOnce::newton};
-constexpr std::array last_ways_of_steps = {AtOnce::newton, AtOnce::newton, AtOnce::held_along};
+constexpr std::array ways_of_impacts = {AtOnce::newton, AtOnce::admm, AtOnce::proximal,
+                                        AtOnce::bounded};
+constexpr std::array ways_of_steps = {AtOnce::newton, AtOnce::admm, AtOnce::newton};
+constexpr std::array last_ways_of_steps = {AtOnce::newton, AtOnce::admm, AtOnce::held_along};
 
 /// When sweeps of a step over many touches are helped by linear systems (`solve_as_found`). What
 /// these give is swept on, and taken back if it has not come nearer in the end. What settles is
@@ -146,11 +147,14 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
   int idle = 0;
   const bool in_step = !rates.empty();
   const bool many = in_step && blocks_.size() > most_for_newton;
-  const std::size_t most = in_step && !last_resort ? most_for_newton : most_at_once;
-  int at_once = blocks_.size() <= most ? at_once_after : most_sweeps;
-  std::span<const AtOnce> ways = !in_step      ? ways_of_impacts
-                                 : last_resort ? last_ways_of_steps
-                                               : ways_of_steps;
+  int at_once = blocks_.size() <= most_at_once ? at_once_after : most_sweeps;
+  std::span<const AtOnce> ways = ways_of_impacts;
+  if (in_step) {
+    ways = last_resort ? last_ways_of_steps : ways_of_steps;
+  }
+  if (blocks_.size() > most_for_newton) {
+    ways = ways.subspan(1);
+  }
   Trial trial;
   double near_enough = settled;
   for (int round = 0; round < most_sweeps; ++round) {
@@ -190,8 +194,10 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
       ways = ways.subspan(1);
       const double off =
           settle_at_once(velocities, rates, settled, rubs, way, along, swept.velocities);
-      // Sweeps would let go again what was held.
-      if (off <= (way == AtOnce::held_along ? nearly_settled : 1.0) * settled) {
+      // Sweeps would let go again what was held; and what is left of many redundant touches is how
+      // they contradict each other.
+      const bool nearly = way == AtOnce::held_along || (in_step && way == AtOnce::admm);
+      if (off <= (nearly ? nearly_settled : 1.0) * settled) {
         swept.changed = off;
         break;
       }

@@ -21,6 +21,8 @@ constexpr double locked = 1e-12;
 constexpr double hardly_moves = 1e-6;
 /// Steps of a bracketed root, each fourth of which halves the bracket.
 constexpr int most_evaluations = 240;
+/// Of Newton's method, which mostly takes three to six; no step turns by more than a half.
+constexpr int most_turns = 12;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// Of a normal impulse that is the smallest that locks.
 constexpr double roundoff = 1e-13;
@@ -28,7 +30,12 @@ constexpr double roundoff = 1e-13;
 /// Sliding along d = (cos angle, sin angle): p_t = -mu p_n d, u_n = 0.
 class Sliding {
  public:
-  Sliding(const Matrix3& W, const Vector3& q, double mu) : W_(W), q_(q), mu_(mu) {}
+  Sliding(const Matrix3& W, const Vector3& q, double mu)
+      : W_(W),
+        q_(q),
+        mu_(mu),
+        without_(W(0, 0) * q.tail<2>() - q[0] * W.block<2, 1>(1, 0)),
+        turns_(mu * (q[0] * W.block<2, 2>(1, 1) - q.tail<2>() * W.block<1, 2>(0, 1))) {}
 
   struct Try {
     double normal = 0.0;    ///< p_n
@@ -57,6 +64,32 @@ class Sliding {
     Try there;
   };
   [[nodiscard]] End at(double angle) const { return {angle, along(angle)}; }
+
+  /// The solution that Newton's method finds from `d`, if there is one. With f = W_nn - mu W_nt d,
+  /// f u_t is without_ + turns_ d, and what is across d is zero.
+  [[nodiscard]] std::optional<Vector3> from(Vector2 d) const {
+    const double most = without_.lpNorm<1>() + turns_.lpNorm<1>();
+    for (int turn = 0; turn < most_turns; ++turn) {
+      const Vector2 u = without_ + turns_ * d;
+      const Vector2 side(-d[1], d[0]);
+      const double across = side.dot(u);
+      const double slope = side.dot(turns_ * side) - d.dot(u);
+      const double step = -across / slope;
+      if (!std::isfinite(step)) {
+        return std::nullopt;
+      }
+      d = (d + std::clamp(step, -0.5, 0.5) * side).normalized();
+      if (std::abs(step) <= 2.0 * epsilon || std::abs(across) <= epsilon * most) {
+        const double felt = W_(0, 0) - mu_ * W_.block<1, 2>(0, 1).dot(d);
+        const double normal = -q_[0] / felt;
+        if (!(felt > 0.0) || d.dot(without_ + turns_ * d) < 0.0) {
+          return std::nullopt;
+        }
+        return Vector3(normal, -mu_ * normal * d[0], -mu_ * normal * d[1]);
+      }
+    }
+    return std::nullopt;
+  }
 
   /// The solution with an angle between the two, where `across` changes its sign, if there is one.
   [[nodiscard]] std::optional<Vector3> between(const End& first, const End& last) const {
@@ -115,6 +148,8 @@ class Sliding {
   const Matrix3& W_;
   const Vector3& q_;
   double mu_;
+  Vector2 without_;
+  Eigen::Matrix2d turns_;
 };
 
 /// What of a tangential impulse holds against x, p_n aside; where nothing moves it takes none.
@@ -177,6 +212,12 @@ Vector3 coulomb_impulse(const Matrix3& W, const Vector3& q, double mu) {
   }
   const Sliding sliding(W, q, mu);
   // The direction of sliding is mostly near that which sticking would have to hold: try it first.
+  const Vector2 held = -stick.tail<2>();
+  if (const double size = held.norm(); size > 0.0 && std::isfinite(size)) {
+    if (const auto found = sliding.from(held / size)) {
+      return *found;
+    }
+  }
   const double guess = std::isnan(stick[0]) ? 0.0 : arc_tangent(-stick[2], -stick[1]);
   Sliding::End left = sliding.at(guess);
   Sliding::End right = left;

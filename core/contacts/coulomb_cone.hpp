@@ -12,7 +12,7 @@ inline namespace core {
 /// along which joints let nothing move. `mu` >= 0, may be infinite.
 ///
 /// Apart, sticking and sliding are tried in this order. Sliding asks for the one unknown angle of
-/// u_t: a bracketed root, to roundoff.
+/// u_t: Newton's method from where sticking would have to hold, or a bracketed root; to roundoff.
 [[nodiscard]] Vector3 coulomb_impulse(const Matrix3& W, const Vector3& q, double mu);
 
 }  // namespace core

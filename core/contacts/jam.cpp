@@ -24,7 +24,8 @@ constexpr double settled = 1e-14;
 
 class Jams {
  public:
-  Jams(const TurningState& state, double still) : state_(state), still_(still) {
+  Jams(const TurningState& state, double still, int halvings)
+      : state_(state), still_(still), most_sweeps_(most_sweeps >> halvings) {
     for (const BodyState& s : state.states) {
       before_.push_back(s.twist);
     }
@@ -112,8 +113,9 @@ class Jams {
     const std::size_t n = now_.size();
     Jam found{before_, std::vector<char>(n, 0)};
     std::vector<Vector3> impulse(n, Vector3::Zero());
-    int at_once = n <= most_for_newton ? at_once_after : most_sweeps;
-    for (int round = 0; round < most_sweeps; ++round) {
+    int at_once = n <= most_at_once ? at_once_after : most_sweeps_;
+    AtOnce way = n <= most_for_newton ? AtOnce::newton : AtOnce::admm;
+    for (int round = 0; round < most_sweeps_; ++round) {
       double changed = 0.0;
       for (std::size_t k = 0; k < n; ++k) {
         const Matrix3 W = coupling_[k];
@@ -129,7 +131,8 @@ class Jams {
       bool ends = changed <= settled * fastest_;
       if (!ends && round == at_once) {
         at_once *= 4;
-        ends = settle_at_once(more, impulse, found.velocities);
+        ends = settle_at_once(more, way, impulse, found.velocities);
+        way = way == AtOnce::newton ? AtOnce::admm : AtOnce::newton;
       }
       if (!ends) {
         continue;
@@ -158,7 +161,8 @@ class Jams {
   }
 
   /// Goes to the nearest that is found at all touches at once from here on; whether it is it.
-  bool settle_at_once(double more, std::vector<Vector3>& impulse, std::vector<Twist>& v) const {
+  bool settle_at_once(double more, AtOnce way, std::vector<Vector3>& impulse,
+                      std::vector<Twist>& v) const {
     const std::size_t n = now_.size();
     const auto size = static_cast<Eigen::Index>(3 * n);
     ContactSystem all{state_.bodies, {}, state_.joints};
@@ -175,7 +179,7 @@ class Jams {
       begin.segment<3>(at) = impulse[k];
     }
     problem.W = all.coupling();
-    const ConeImpulses found = cone_newton(problem, begin, settled * fastest_);
+    const ConeImpulses found = cone_at_once(problem, begin, settled * fastest_, way);
     v = before_;
     for (std::size_t k = 0; k < n; ++k) {
       impulse[k] = found.impulse.segment<3>(static_cast<Eigen::Index>(3 * k));
@@ -186,6 +190,7 @@ class Jams {
 
   const TurningState& state_;
   double still_;
+  int most_sweeps_;
   double fastest_ = 0.0;  ///< m/s
   std::vector<Twist> before_;
   std::vector<TouchNow> now_;
@@ -195,8 +200,8 @@ class Jams {
 
 }  // namespace
 
-std::optional<Jam> jam(const TurningState& state, double still) {
-  return Jams(state, still).find();
+std::optional<Jam> jam(const TurningState& state, double still, int halvings) {
+  return Jams(state, still, halvings).find();
 }
 
 }  // namespace core

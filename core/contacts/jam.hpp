@@ -24,8 +24,8 @@ struct Jam {
 /// Impulses are within the cones of friction, against what still slides afterwards, and none where
 /// they part [Moreau1988]: kinetic energy never grows, whatever they are. They are looked for touch
 /// by touch, again and again; nothing where that does not settle. `still`: what slides slower than
-/// this, m/s, sticks.
-[[nodiscard]] std::optional<Jam> jam(const TurningState& state, double still);
+/// this, m/s, sticks. `halvings`: the most that is done for it is halved so many times.
+[[nodiscard]] std::optional<Jam> jam(const TurningState& state, double still, int halvings = 0);
 
 }  // namespace core
 }  // namespace kairos

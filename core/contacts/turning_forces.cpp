@@ -6,12 +6,14 @@
 #include "core/contacts/nonnegative_solve.hpp"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SparseLU>
 
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 namespace kairos {
 inline namespace core {
@@ -38,40 +40,48 @@ constexpr double opens = 1e-10;
 /// a mode is found: what ends one is several times as much.
 constexpr double carried = 1e-11;
 
-/// Solves K x = -q, where K may be singular: a damped K, which is not, is solved for what is left,
-/// again and again. It is several times as fast as an orthogonal decomposition. Where forces are
-/// redundant it finds some that fit. False: it does not get there, or is not worth it.
-bool solve_damped(const MatrixXd& K, const VectorXd& q, double load, VectorXd& x) {
-  constexpr Index worth_it = 32;
-  constexpr double damping = 1e-8;  // of the largest element
+/// Equations that leave more than this part of the load contradict each other.
+constexpr double contradicts = 1e-9;
+
+/// Solves K x = -q by a decomposition of a damped K for what is left, again and again; false: it
+/// does not get there, and what is left is not as much as equations leave that contradict each
+/// other.
+template <typename Decomposition>
+bool refine(const Decomposition& decomposition, const MatrixXd& K, const VectorXd& q, double load,
+            VectorXd& x) {
   constexpr int most_rounds = 6;
   constexpr double solved = 1e-14;  // of the load
-  if (K.rows() < worth_it) {
-    return false;
-  }
-  MatrixXd damped = K;
-  damped.diagonal().array() += damping * K.cwiseAbs().maxCoeff();
-  // Touches that share no body have nothing to do with each other. Dense decompositions by blocks
-  // add in an order that depends on the processor's caches; this one does not.
-  const Eigen::SparseMatrix<double> few = damped.sparseView();
-  const Eigen::SparseLU<Eigen::SparseMatrix<double>> decomposition(few);
-  if (decomposition.info() != Eigen::Success) {
-    return false;
-  }
   x = VectorXd::Zero(q.size());
   VectorXd rest = -q;
-  for (int round = 0; round < most_rounds; ++round) {
+  double off = rest.lpNorm<Eigen::Infinity>();
+  for (int round = 0; round < most_rounds && off > solved * load; ++round) {
     x += decomposition.solve(rest);
     rest = -(K * x + q);
-    const double off = rest.lpNorm<Eigen::Infinity>();
-    if (off <= solved * load) {
-      return true;
-    }
-    if (!std::isfinite(off)) {
-      return false;
+    const double before = std::exchange(off, rest.lpNorm<Eigen::Infinity>());
+    if (!(off < 0.5 * before)) {
+      break;
     }
   }
-  return false;
+  return off <= solved * load || (off > contradicts * load && std::isfinite(off));
+}
+
+/// Solves K x = -q, where K may be singular: a damped K is not. It is several times as fast as an
+/// orthogonal decomposition. Where forces are redundant it finds some that fit. False: see
+/// `refine`.
+bool solve_damped(const MatrixXd& K, const VectorXd& q, double load, VectorXd& x) {
+  constexpr Index many = 32;
+  constexpr double damping = 1e-8;  // of the largest element
+  MatrixXd damped = K;
+  damped.diagonal().array() += damping * K.cwiseAbs().maxCoeff();
+  // Dense decompositions by blocks add in an order that depends on the processor's caches; these
+  // do not.
+  if (K.rows() < many) {
+    return refine(Eigen::FullPivLU<MatrixXd>(damped), K, q, load, x);
+  }
+  // Touches that share no body have nothing to do with each other.
+  const Eigen::SparseMatrix<double> few = damped.sparseView();
+  const Eigen::SparseLU<Eigen::SparseMatrix<double>> decomposition(few);
+  return decomposition.info() == Eigen::Success && refine(decomposition, K, q, load, x);
 }
 
 bool pushes(const FrictionChoice& c) { return c.does != Does::opens; }
@@ -396,7 +406,6 @@ double TurningForces::closing(std::span<const FrictionChoice> choices,
 
 TurningForces::Solution TurningForces::verified(std::span<const FrictionChoice> choices,
                                                 const Verifying& options) {
-  constexpr double contradicts = 1e-9;
   const auto is_beyond = [](const Solution& s) {
     return s.violation > FrictionForces::solve_roundoff;
   };

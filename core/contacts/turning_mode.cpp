@@ -36,7 +36,11 @@ int most_solves_of(std::size_t touches) {
 
 class Search {
  public:
-  Search(const TurningState& state, double still) : state_(state), forces_(state), still_(still) {}
+  Search(const TurningState& state, double still, int halvings)
+      : state_(state),
+        forces_(state),
+        still_(still),
+        most_solves_(most_solves_of(state.touches.size()) >> halvings) {}
 
   TurningMode result() {
     if (!search()) {
@@ -103,7 +107,8 @@ class Search {
         !pressed.empty() && attempt(pressed)) {
       return true;
     }
-    most_ = forces_.solves() + most_solves_of(state_.touches.size());
+    mode_.searched = true;
+    most_ = forces_.solves() + most_solves_;
     for (const std::size_t changes : {1U, 2U}) {
       for (const bool from_likely : {true, false}) {
         std::vector<Choice> choices = from_likely ? likely : as_is;
@@ -190,11 +195,16 @@ class Search {
            (sticks_rather(choices, begins) || accept(choices));
   }
 
+  /// Accelerations: forces are some that fit, as several bodies need no others.
+  [[nodiscard]] Solution moved_by(const std::vector<Choice>& choices) {
+    return forces_.solve(choices, !forces_.several());
+  }
+
   /// What begins to slide without an acceleration sticks, where that can be verified: forces may be
   /// at the edge of a cone because others could take what they do, and slipping would only end, and
   /// begin again.
   bool sticks_rather(std::vector<Choice> choices, const std::vector<std::size_t>& begins) {
-    const Solution found = forces_.solve(choices);
+    const Solution found = moved_by(choices);
     bool some = false;
     for (const std::size_t k : begins) {
       if (choices[k].direction.dot(forces_.acceleration(k, found.accelerations)) <=
@@ -208,7 +218,7 @@ class Search {
 
   /// Where friction is not known to act against yet: the acceleration without it.
   bool first_directions(std::vector<Choice>& choices) {
-    const Solution found = forces_.solve(choices);
+    const Solution found = moved_by(choices);
     for (std::size_t k = 0; k < choices.size(); ++k) {
       if (choices[k].does != Does::begins || !choices[k].direction.isZero(0.0)) {
         continue;
@@ -234,7 +244,7 @@ class Search {
   /// Of the accelerations of what begins to slide, the part across its direction, of the load.
   Eigen::VectorXd aside(const std::vector<Choice>& choices,
                         const std::vector<std::size_t>& begins) {
-    const Solution found = forces_.solve(choices);
+    const Solution found = moved_by(choices);
     Eigen::VectorXd out(static_cast<Eigen::Index>(begins.size()));
     for (std::size_t j = 0; j < begins.size(); ++j) {
       const std::size_t k = begins[j];
@@ -263,7 +273,7 @@ class Search {
 
   /// Whether nothing slides along its friction.
   bool slides_on(const std::vector<Choice>& choices, const std::vector<std::size_t>& begins) {
-    const Solution found = forces_.solve(choices);
+    const Solution found = moved_by(choices);
     return std::all_of(begins.begin(), begins.end(), [&](std::size_t k) {
       return choices[k].direction.dot(forces_.acceleration(k, found.accelerations)) >=
              -turning_roundoff * forces_.load();
@@ -308,7 +318,8 @@ class Search {
   const TurningState& state_;
   TurningForces forces_;
   double still_;
-  int most_ = 0;  ///< solves
+  int most_solves_;  ///< of each search
+  int most_ = 0;     ///< solves at which this one ends
   TurningMode mode_;
 };
 
@@ -329,8 +340,8 @@ std::vector<Twist> velocities_of(const TurningState& state) {
 
 }  // namespace
 
-TurningMode turning_mode(const TurningState& state, double still) {
-  return Search(state, still).result();
+TurningMode turning_mode(const TurningState& state, double still, int halvings) {
+  return Search(state, still, halvings).result();
 }
 
 HeldVelocities held_velocities(const TurningState& state, const std::vector<TouchNow>& now,

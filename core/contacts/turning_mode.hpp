@@ -19,6 +19,7 @@ struct TurningMode {
   bool flies = false;             ///< nothing is held
   bool implicit = false;          ///< forces are those of a step, see `implicit_mode`
   bool keeps_all = false;         ///< what is not held goes on with what is, too
+  bool searched = false;          ///< what is likely did not verify: changes of it were tried
   int solves = 0;
 };
 
@@ -29,8 +30,9 @@ inline constexpr double turning_roundoff = 1e-11;
 /// Proposes what each touch does (opens, sticks, slides) and accepts what was verified: first that
 /// all go on as they move, then what projected Gauss-Seidel finds likely, then what differs from
 /// either in one touch or two. All touches are at rest along their normals. `still`: what slides
-/// slower than this, m/s, is taken to stick or to begin to slide.
-[[nodiscard]] TurningMode turning_mode(const TurningState& state, double still);
+/// slower than this, m/s, is taken to stick or to begin to slide. `halvings`: the most changes that
+/// are tried are halved so many times.
+[[nodiscard]] TurningMode turning_mode(const TurningState& state, double still, int halvings = 0);
 
 /// Velocities with nothing left along the normals of what is held, nor where it sticks: nearest, as
 /// the kinetic energy measures.

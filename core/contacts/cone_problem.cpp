@@ -1,0 +1,131 @@
+#include "core/contacts/cone_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+Eigen::Index place(std::size_t k) { return 3 * static_cast<Eigen::Index>(k); }
+
+}  // namespace
+
+ConeProjections::ConeProjections(const ConeProblem& problem) : of_(problem) {
+  for (std::size_t k = 0; k < of_.friction.size(); ++k) {
+    const Eigen::Index at = place(k);
+    felt_.push_back(of_.W.diagonal().segment<3>(at).maxCoeff());
+  }
+}
+
+VectorXd ConeProjections::off(const VectorXd& p) const {
+  const VectorXd u = of_.W * p + of_.q;
+  VectorXd F(p.size());
+  for (std::size_t k = 0; k < felt_.size(); ++k) {
+    const Eigen::Index at = place(k);
+    const Vector3d pk = p.segment<3>(at);
+    const Vector3d uk = u.segment<3>(at);
+    const Vector3d z = felt_[k] * pk - uk;
+    switch (state(k, pk, uk, z)) {
+      case Does::opens:
+        F.segment<3>(at) = felt_[k] * pk;
+        break;
+      case Does::holds_along:
+        F.segment<3>(at) << felt_[k] * pk[0], uk.tail<2>();
+        break;
+      case Does::sticks:
+        F.segment<3>(at) = uk;
+        break;
+      case Does::slides:
+        F[at] = uk[0];
+        F.segment<2>(at + 1) =
+            felt_[k] * pk.tail<2>() - of_.friction[k] * z[0] * z.tail<2>().normalized();
+    }
+  }
+  return F;
+}
+
+MatrixXd ConeProjections::change(const VectorXd& p) const {
+  const VectorXd u = of_.W * p + of_.q;
+  MatrixXd J(p.size(), p.size());
+  for (std::size_t k = 0; k < felt_.size(); ++k) {
+    const Eigen::Index at = place(k);
+    const Vector3d pk = p.segment<3>(at);
+    const Vector3d z = felt_[k] * pk - u.segment<3>(at);
+    auto rows = J.middleRows<3>(at);
+    rows = of_.W.middleRows<3>(at);
+    const auto keeps = [&](Eigen::Index r) {
+      rows.row(r).setZero();
+      rows(r, at + r) = felt_[k];
+    };
+    switch (state(k, pk, u.segment<3>(at), z)) {
+      case Does::opens:
+        keeps(0);
+        keeps(1);
+        keeps(2);
+        break;
+      case Does::holds_along:
+        keeps(0);
+        break;
+      case Does::sticks:
+        break;
+      case Does::slides: {
+        // d z = felt d p - W d p
+        MatrixXd dz = -of_.W.middleRows<3>(at);
+        dz.middleCols<3>(at).diagonal().array() += felt_[k];
+        const double length = z.tail<2>().norm();
+        const Vector2d d = z.tail<2>() / length;
+        const Matrix2d turn =
+            of_.friction[k] * z[0] / length * (Matrix2d::Identity() - d * d.transpose());
+        rows.bottomRows<2>() = -of_.friction[k] * d * dz.row(0) - turn * dz.bottomRows<2>();
+        rows(1, at + 1) += felt_[k];
+        rows(2, at + 2) += felt_[k];
+      }
+    }
+  }
+  return J;
+}
+
+void ConeProjections::make_exact(ConeImpulses& nearest) const {
+  VectorXd& p = nearest.impulse;
+  const VectorXd u = of_.W * p + of_.q;
+  for (std::size_t k = 0; k < felt_.size(); ++k) {
+    const Eigen::Index at = place(k);
+    const Vector3d pk = p.segment<3>(at);
+    const Vector3d uk = u.segment<3>(at);
+    const Does does = state(k, pk, uk, felt_[k] * pk - uk);
+    if (does == Does::opens || does == Does::holds_along) {
+      p[at] = 0.0;
+    }
+    p[at] = std::max(p[at], 0.0);
+    const double most = of_.friction[k] * p[at];
+    const double across = pk.tail<2>().norm();
+    if (does == Does::opens || of_.friction[k] == 0.0) {
+      p.segment<2>(at + 1).setZero();
+    } else if (!std::isinf(of_.friction[k]) && across > most) {
+      p.segment<2>(at + 1) *= most / across;
+    }
+  }
+  nearest.off = off(p).lpNorm<Eigen::Infinity>();
+}
+
+ConeProjections::Does ConeProjections::state(std::size_t k, const Vector3d& p, const Vector3d& u,
+                                             const Vector3d& z) const {
+  const double mu = of_.friction[k];
+  if (!(z[0] > 0.0)) {
+    // Friction without a bound holds what would approach without it.
+    const Eigen::Index at = place(k);
+    const bool presses = u[0] - of_.W.block<1, 3>(at, at).dot(p) < 0.0;
+    return std::isinf(mu) && (of_.holds_along || presses) ? Does::holds_along : Does::opens;
+  }
+  return std::isinf(mu) || z.tail<2>().norm() <= mu * z[0] ? Does::sticks : Does::slides;
+}
+
+}  // namespace core
+}  // namespace kairos

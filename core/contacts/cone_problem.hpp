@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <vector>
+
+namespace kairos {
+inline namespace core {
+
+/// Impulses p at all touches at once: u = W p + q with, by touch, 0 <= u_n, 0 <= p_n, u_n p_n = 0,
+/// |p_t| <= mu p_n, and p_t against u_t where that is not 0.
+struct ConeProblem {
+  Eigen::MatrixXd W;             ///< 3 by touch, symmetric, positive semidefinite, 1/kg
+  Eigen::VectorXd q;             ///< rates without impulses, m/s: normal, then two tangents
+  std::vector<double> friction;  ///< by touch, >= 0; infinite: rough
+  bool holds_along = false;      ///< what is rough has u_t = 0 and any p_t, pressed or not
+};
+
+/// Impulses, and what they are off.
+struct ConeImpulses {
+  Eigen::VectorXd impulse;  ///< N s, 3 by touch
+  double off = 0.0;         ///< m/s: of velocities, or of what impulses do alone; 0: all is kept
+};
+
+/// A problem as a function that is zero where all is kept: by touch a projection onto the cone of
+/// what it would take [AlartCurnier1991]. It keeps a reference to the problem.
+class ConeProjections {
+ public:
+  explicit ConeProjections(const ConeProblem& problem);
+
+  /// What impulses are off, m/s, 3 by touch.
+  [[nodiscard]] Eigen::VectorXd off(const Eigen::VectorXd& p) const;
+  /// The derivative of `off`.
+  [[nodiscard]] Eigen::MatrixXd change(const Eigen::VectorXd& p) const;
+  /// Into the cones, which the nearest may miss by what it is off: what opens takes no impulse at
+  /// all, and what has no friction none across.
+  void make_exact(ConeImpulses& nearest) const;
+
+ private:
+  enum class Does { opens, holds_along, sticks, slides };
+  [[nodiscard]] Does state(std::size_t k, const Eigen::Vector3d& p, const Eigen::Vector3d& u,
+                           const Eigen::Vector3d& z) const;
+
+  const ConeProblem& of_;
+  std::vector<double> felt_;  ///< what an impulse does, 1/kg
+};
+
+}  // namespace core
+}  // namespace kairos
