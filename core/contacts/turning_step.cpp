@@ -370,7 +370,8 @@ class Step {
   }
 
   /// Whether something is held beyond the rim of what it is on: by more than roundoff, so that it
-  /// is known to be beyond, and by more than it was.
+  /// is known to be beyond, and by more than twice what it was, as steps that end there may not
+  /// follow each other without end.
   [[nodiscard]] bool rim(const TurningState& state) const {
     for (std::size_t k = 0; k < state.touches.size(); ++k) {
       const Touch& touch = state.touches[k];
@@ -382,7 +383,7 @@ class Step {
         const auto& start = group_.start.states;
         const double before = rim.beyond(touch, start[touch.a], start[touch.b]);
         if (rim.beyond(touch, state.states[touch.a], state.states[touch.b]) >
-            std::max(before, 0.0) + over_rim * size) {
+            2.0 * std::max(before, 0.0) + over_rim * size) {
           return true;
         }
       }

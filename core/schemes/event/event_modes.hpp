@@ -205,7 +205,7 @@ class EventModes {
   void lift(Gathered& found, Turning& turning, Instant t, bool at_least);
   void raise(Gathered& found, Turning& turning, Instant t, bool at_least);
   [[nodiscard]] static bool let_hop(Turning& turning, double roundoff);
-  void let_jam(const Gathered& found, Turning& turning, Instant t, double still) const;
+  void let_jam(const Gathered& found, Turning& turning, Instant t, double still);
   void tell_jam(const Gathered& found, const Turning& turning, Instant t);
   [[nodiscard]] bool has_room(std::span<const BodyState> before, const Gathered& found, Instant t);
   [[nodiscard]] bool part_ways(const Gathered& found, Turning& turning, Instant t,
@@ -215,8 +215,7 @@ class EventModes {
                          const Adopt& adopt);
   void book_lift(const Gathered& found, Instant t);
   void carry_on(const Gathered& found, const Turning& turning, Instant t, const Adopt& adopt);
-  void end_together(const Gathered& found, const FlatMode& mode, Instant end,
-                    const BodyPair* strikes);
+  void end_together(const Gathered& found, const FlatMode& mode, Instant end, bool strikes);
   [[nodiscard]] bool settle_driven(Gathered found, Instant t, const Adopt& adopt);
   [[nodiscard]] std::vector<Change> join_and_part(const Gathered& found, const FlatMode& mode,
                                                   Instant t);
@@ -238,9 +237,13 @@ class EventModes {
     bool once = false;
     double frame = 0.0;  ///< counted from the start of the run
     int steps = 0;
+    int in_vain = 0;  ///< searches for its forces in that frame that found none, in a row
 
     void persist(Archive& archive);
   };
+  [[nodiscard]] Turned& turned_in_frame(BodyIndex i, Instant t);
+  void count_search(const Gathered& found, const Turning& turning, Instant t);
+  [[nodiscard]] int in_vain(const Gathered& found, Instant t);
   std::vector<Turned> has_turned_;
 };
 

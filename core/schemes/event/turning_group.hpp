@@ -20,6 +20,8 @@ struct TurningLimits {
   static constexpr int most_steps = 3000;
   /// After so many its hops count as rest below half of what counts as touch.
   static constexpr int many_steps = 1000;
+  /// Searches for forces that found none are halved so many times at most: to a hundred solves.
+  static constexpr int most_halvings = 5;
 };
 
 /// A group that turns, as it is settled.

@@ -187,7 +187,9 @@ void EventModes::find_forces(const Gathered& found, Turning& turning, Instant t)
                              : found.group.instant;
   const double still = TurningForces(turning.group.start).load() * instant + roundoff;
   const auto find = [&] {
-    turning.mode = turning_mode(turning.group.start, std::max(still, turning_rest(turning.group)));
+    turning.mode = turning_mode(turning.group.start, std::max(still, turning_rest(turning.group)),
+                                in_vain(found, t));
+    count_search(found, turning, t);
     return turning.mode.refusal.empty();
   };
   if (find()) {
@@ -252,17 +254,48 @@ std::string EventModes::why_not_turn(const Gathered& found, Instant t) const {
   return {};
 }
 
-void EventModes::count_step(const Gathered& found, Instant t) {
+/// What is counted of a body in the frame of `t`.
+EventModes::Turned& EventModes::turned_in_frame(BodyIndex i, Instant t) {
+  Turned& turned = has_turned_[i];
   const double frame = std::floor(t.seconds / run_.mean_frame);
+  if (turned.frame != frame) {
+    turned = {.once = turned.once, .frame = frame};
+  }
+  return turned;
+}
+
+void EventModes::count_step(const Gathered& found, Instant t) {
   for (const BodyIndex i : found.bodies) {
     if (run_.model.is_free(i)) {
-      Turned& turned = has_turned_[i];
-      turned = {true, frame, turned.once && turned.frame == frame ? turned.steps + 1 : 1};
+      Turned& turned = turned_in_frame(i, t);
+      turned.once = true;
+      ++turned.steps;
     }
   }
 }
 
-void EventModes::Turned::persist(Archive& archive) { archive(once, frame, steps); }
+/// Where nothing is found, again and again, each search takes half as long as the one before.
+void EventModes::count_search(const Gathered& found, const Turning& turning, Instant t) {
+  for (const BodyIndex i : found.bodies) {
+    if (run_.model.is_free(i) && turning.mode.searched) {
+      Turned& turned = turned_in_frame(i, t);
+      turned.in_vain = turning.mode.refusal.empty() ? 0 : turned.in_vain + 1;
+    }
+  }
+}
+
+/// How many times the longest search for forces of a group is halved.
+int EventModes::in_vain(const Gathered& found, Instant t) {
+  int most = 0;
+  for (const BodyIndex i : found.bodies) {
+    if (run_.model.is_free(i)) {
+      most = std::max(most, turned_in_frame(i, t).in_vain);
+    }
+  }
+  return std::min(most, TurningLimits::most_halvings);
+}
+
+void EventModes::Turned::persist(Archive& archive) { archive(once, frame, steps, in_vain); }
 void EventModes::persist(Archive& archive) {
   archive(has_turned_);
   archive.require(has_turned_.size() == run_.model.size());
@@ -443,8 +476,8 @@ bool EventModes::let_hop(Turning& turning, double roundoff) {
 }
 
 /// Where friction jams what slides, an impulse stops it, and it goes on from there.
-void EventModes::let_jam(const Gathered& found, Turning& turning, Instant t, double still) const {
-  auto stopped = jam(turning.group.start, still);
+void EventModes::let_jam(const Gathered& found, Turning& turning, Instant t, double still) {
+  auto stopped = jam(turning.group.start, still, in_vain(found, t));
   if (!stopped) {
     return;
   }
@@ -701,25 +734,21 @@ void EventModes::carry_on(const Gathered& found, const Turning& turning, Instant
     const auto& [a, b] = found.pairs[turning.step.pair];
     run_.agenda.push(end, DueKind::impact, a, b, 0.0, true);
   }
-  end_together(found, mode, end, strikes ? &found.pairs[turning.step.pair] : nullptr);
+  end_together(found, mode, end, strikes);
 }
 
 /// What hangs together is looked at again at `end`. Where a strike ends the step that comes first,
-/// and is the end of those that it concerns. It may never come: what is held by neither may have
-/// been struck by others before.
+/// before all of the group: what began anew before it would take those near with it, and put the
+/// strike off, again and again. It may never come: what is held by neither may have been struck by
+/// others before.
 void EventModes::end_together(const Gathered& found, const FlatMode& mode, Instant end,
-                              const BodyPair* strikes) {
-  std::vector<BodyIndex> struck;
-  if (strikes != nullptr) {
-    struck = group(std::array{strikes->first, strikes->second});
-  }
+                              bool strikes) {
   std::vector<BodyIndex> told;
   for (std::size_t p = 0; p < found.pairs.size(); ++p) {
     const auto& [a, b] = found.pairs[p];
     const BodyIndex free = run_.model.is_free(a) ? a : b;
     if (mode.kept[p] != 0 && std::find(told.begin(), told.end(), free) == told.end()) {
-      const bool after = std::find(struck.begin(), struck.end(), free) != struck.end();
-      run_.agenda.push(end, after ? DueKind::step_ends : DueKind::mode_ends, a, b);
+      run_.agenda.push(end, strikes ? DueKind::step_ends : DueKind::mode_ends, a, b);
       for (const BodyIndex k : group(std::array{a, b})) {
         told.push_back(k);
       }
