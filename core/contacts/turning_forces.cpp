@@ -40,6 +40,9 @@ constexpr double opens = 1e-10;
 /// a mode is found: what ends one is several times as much.
 constexpr double carried = 1e-11;
 
+/// Systems of so many rows are worth the order of a sparse decomposition.
+constexpr Index many = 32;
+
 /// Equations that leave more than this part of the load contradict each other.
 constexpr double contradicts = 1e-9;
 
@@ -69,7 +72,6 @@ bool refine(const Decomposition& decomposition, const MatrixXd& K, const VectorX
 /// orthogonal decomposition. Where forces are redundant it finds some that fit. False: see
 /// `refine`.
 bool solve_damped(const MatrixXd& K, const VectorXd& q, double load, VectorXd& x) {
-  constexpr Index many = 32;
   constexpr double damping = 1e-8;  // of the largest element
   MatrixXd damped = K;
   damped.diagonal().array() += damping * K.cwiseAbs().maxCoeff();
@@ -207,6 +209,14 @@ double TurningForces::gap_acceleration(std::size_t k, std::span<const Twist> v) 
 
 TurningForces::Solution TurningForces::solve(std::span<const FrictionChoice> choices,
                                              bool least_norm) {
+  return solve(choices, least_norm ? Which::least_norm : Which::some_of_many);
+}
+
+TurningForces::Solution TurningForces::accelerations(std::span<const FrictionChoice> choices) {
+  return solve(choices, several() ? Which::some : Which::least_norm);
+}
+
+TurningForces::Solution TurningForces::solve(std::span<const FrictionChoice> choices, Which which) {
   std::vector<Line> asks;
   std::vector<Line> gives;
   for (std::size_t k = 0; k < choices.size(); ++k) {
@@ -239,7 +249,8 @@ TurningForces::Solution TurningForces::solve(std::span<const FrictionChoice> cho
   }
   ++solves_;
   VectorXd x;
-  if (least_norm || !solve_damped(K, q, load_, x)) {
+  const bool damped = which == Which::some || (which == Which::some_of_many && n >= many);
+  if (!damped || !solve_damped(K, q, load_, x)) {
     Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
     decomposition.setThreshold(rank_threshold);
     decomposition.compute(K);

@@ -62,6 +62,8 @@ class TurningForces {
   /// Forces and accelerations, not verified. `least_norm`: of all that do the same; otherwise some
   /// of them, which is faster where many touch.
   [[nodiscard]] Solution solve(std::span<const FrictionChoice> choices, bool least_norm = true);
+  /// Accelerations, not verified, by some forces of those that do the same: the fastest to find.
+  [[nodiscard]] Solution accelerations(std::span<const FrictionChoice> choices);
   /// Whether more than two bodies are free to move.
   [[nodiscard]] bool several() const { return free_ > 2; }
   /// The same with its `violation`: forces within the cones are looked for where those of least
@@ -83,6 +85,8 @@ class TurningForces {
 
  private:
   using Vector6 = Eigen::Matrix<double, 6, 1>;
+  enum class Which { least_norm, some_of_many, some };
+  [[nodiscard]] Solution solve(std::span<const FrictionChoice> choices, Which which);
   /// A unit force along `direction` at a touch.
   struct Line {
     std::size_t touch = 0;
