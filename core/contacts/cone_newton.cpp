@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace kairos {
 inline namespace core {
@@ -12,6 +13,7 @@ namespace {
 
 using Eigen::VectorXd;
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int most_steps = 30;
 /// So many steps that do not halve what is left get no nearer.
 constexpr int most_idle = 12;
@@ -102,8 +104,9 @@ ConeImpulses cone_at_once(const ConeProblem& problem, const VectorXd& begin, dou
   if (way == AtOnce::held_along && rough) {
     ConeProblem held = problem;
     held.holds_along = true;
-    ConeImpulses found = few ? cone_newton(held, begin, settled) : ConeImpulses{begin, 0.0};
-    return few && found.off <= settled ? found : cone_admm(held, found.impulse, settled);
+    const ConeImpulses found =
+        few ? cone_newton(held, begin, settled) : ConeImpulses{begin, infinity};
+    return found.off <= settled ? found : cone_admm(held, found.impulse, settled);
   }
   return {begin, ConeProjections(problem).off(begin).lpNorm<Eigen::Infinity>()};
 }

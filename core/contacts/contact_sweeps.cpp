@@ -24,9 +24,12 @@ constexpr double most_contradiction = 100.0;
 /// in so many more, change what rounding does: others would do the same.
 constexpr double nearly_settled = 1e4;
 constexpr int idle_sweeps = 64;
-/// What has not settled after so many sweeps is looked for at all touches at once, and after four,
-/// sixteen and 64 times as many again, in these ways; steps, which come often, have the first ones.
+/// What has not settled after so many sweeps is looked for at all touches at once, and after so
+/// many times as many again and again, in these ways: all of them before `most_sweeps`. Steps,
+/// which come often, have the first ones.
 constexpr int at_once_after = 64;
+constexpr int later_in_impacts = 3;
+constexpr int later_in_steps = 4;
 constexpr std::array ways_of_impacts = {AtOnce::newton, AtOnce::admm, AtOnce::proximal,
                                         AtOnce::bounded};
 constexpr std::array ways_of_steps = {AtOnce::newton, AtOnce::admm, AtOnce::newton};
@@ -189,7 +192,7 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
       break;
     }
     if (round == at_once && !ways.empty()) {
-      at_once *= 4;
+      at_once *= in_step ? later_in_steps : later_in_impacts;
       const AtOnce way = ways.front();
       ways = ways.subspan(1);
       const double off =

@@ -207,15 +207,6 @@ double TurningForces::gap_acceleration(std::size_t k, std::span<const Twist> v) 
   return now_[k].normal.dot(acceleration(k, v) - now_[k].bias) + now_[k].normal_bias;
 }
 
-TurningForces::Solution TurningForces::solve(std::span<const FrictionChoice> choices,
-                                             bool least_norm) {
-  return solve(choices, least_norm ? Which::least_norm : Which::some_of_many);
-}
-
-TurningForces::Solution TurningForces::accelerations(std::span<const FrictionChoice> choices) {
-  return solve(choices, several() ? Which::some : Which::least_norm);
-}
-
 TurningForces::Solution TurningForces::solve(std::span<const FrictionChoice> choices, Which which) {
   std::vector<Line> asks;
   std::vector<Line> gives;
@@ -420,7 +411,7 @@ TurningForces::Solution TurningForces::verified(std::span<const FrictionChoice> 
   const auto is_beyond = [](const Solution& s) {
     return s.violation > FrictionForces::solve_roundoff;
   };
-  Solution found = solve(choices, !several());
+  Solution found = solve(choices, of_several(Which::some_of_many));
   found.violation = cone_violation(choices, found);
   // Whatever forces are redundant, accelerations are the same.
   if (const double closes = closing(choices, found); closes > options.most) {

@@ -59,13 +59,21 @@ class TurningForces {
   [[nodiscard]] int solves() const { return solves_; }
   [[nodiscard]] const std::vector<Touch>& touches() const { return state_.touches; }
 
-  /// Forces and accelerations, not verified. `least_norm`: of all that do the same; otherwise some
-  /// of them, which is faster where many touch.
-  [[nodiscard]] Solution solve(std::span<const FrictionChoice> choices, bool least_norm = true);
-  /// Accelerations, not verified, by some forces of those that do the same: the fastest to find.
-  [[nodiscard]] Solution accelerations(std::span<const FrictionChoice> choices);
+  /// Which forces are found of those that do the same.
+  enum class Which {
+    least_norm,
+    some_of_many,  ///< where many touch some, which is faster, else those of least norm
+    some           ///< the fastest to find
+  };
+  /// Forces and accelerations, not verified.
+  [[nodiscard]] Solution solve(std::span<const FrictionChoice> choices,
+                               Which which = Which::least_norm);
   /// Whether more than two bodies are free to move.
   [[nodiscard]] bool several() const { return free_ > 2; }
+  /// `which`, where several bodies are free; else those of least norm.
+  [[nodiscard]] Which of_several(Which which) const {
+    return several() ? which : Which::least_norm;
+  }
   /// The same with its `violation`: forces within the cones are looked for where those of least
   /// norm are not.
   [[nodiscard]] Solution verified(std::span<const FrictionChoice> choices,
@@ -85,8 +93,6 @@ class TurningForces {
 
  private:
   using Vector6 = Eigen::Matrix<double, 6, 1>;
-  enum class Which { least_norm, some_of_many, some };
-  [[nodiscard]] Solution solve(std::span<const FrictionChoice> choices, Which which);
   /// A unit force along `direction` at a touch.
   struct Line {
     std::size_t touch = 0;

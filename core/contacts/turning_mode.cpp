@@ -195,11 +195,16 @@ class Search {
            (sticks_rather(choices, begins) || accept(choices));
   }
 
+  /// For its accelerations, which are the same whatever forces do it.
+  [[nodiscard]] Solution moved_by(const std::vector<Choice>& choices) {
+    return forces_.solve(choices, forces_.of_several(TurningForces::Which::some));
+  }
+
   /// What begins to slide without an acceleration sticks, where that can be verified: forces may be
   /// at the edge of a cone because others could take what they do, and slipping would only end, and
   /// begin again.
   bool sticks_rather(std::vector<Choice> choices, const std::vector<std::size_t>& begins) {
-    const Solution found = forces_.accelerations(choices);
+    const Solution found = moved_by(choices);
     bool some = false;
     for (const std::size_t k : begins) {
       if (choices[k].direction.dot(forces_.acceleration(k, found.accelerations)) <=
@@ -213,7 +218,7 @@ class Search {
 
   /// Where friction is not known to act against yet: the acceleration without it.
   bool first_directions(std::vector<Choice>& choices) {
-    const Solution found = forces_.accelerations(choices);
+    const Solution found = moved_by(choices);
     for (std::size_t k = 0; k < choices.size(); ++k) {
       if (choices[k].does != Does::begins || !choices[k].direction.isZero(0.0)) {
         continue;
@@ -239,7 +244,7 @@ class Search {
   /// Of the accelerations of what begins to slide, the part across its direction, of the load.
   Eigen::VectorXd aside(const std::vector<Choice>& choices,
                         const std::vector<std::size_t>& begins) {
-    const Solution found = forces_.accelerations(choices);
+    const Solution found = moved_by(choices);
     Eigen::VectorXd out(static_cast<Eigen::Index>(begins.size()));
     for (std::size_t j = 0; j < begins.size(); ++j) {
       const std::size_t k = begins[j];
@@ -268,7 +273,7 @@ class Search {
 
   /// Whether nothing slides along its friction.
   bool slides_on(const std::vector<Choice>& choices, const std::vector<std::size_t>& begins) {
-    const Solution found = forces_.accelerations(choices);
+    const Solution found = moved_by(choices);
     return std::all_of(begins.begin(), begins.end(), [&](std::size_t k) {
       return choices[k].direction.dot(forces_.acceleration(k, found.accelerations)) >=
              -turning_roundoff * forces_.load();

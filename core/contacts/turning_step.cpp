@@ -104,10 +104,12 @@ class ContactForce final : public Force {
            std::span<Wrench> wrenches) const override {
     const TurningState state = turning_state(group_, t, bodies);
     TurningForces forces(state);
-    const auto force =
-        mode_.implicit
-            ? carried_forces(group_, mode_, forces.now())
-            : forces.solve(directed(mode_, forces.now(), slow_), !forces.several()).force;
+    const auto force = mode_.implicit
+                           ? carried_forces(group_, mode_, forces.now())
+                           : forces
+                                 .solve(directed(mode_, forces.now(), slow_),
+                                        forces.of_several(TurningForces::Which::some_of_many))
+                                 .force;
     std::size_t next = 0;
     for (std::size_t i = 0; i < group_.bodies.size(); ++i) {
       if (group_.inertia[i].mass > 0.0) {

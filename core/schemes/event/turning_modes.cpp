@@ -205,133 +205,6 @@ void EventModes::find_forces(const Gathered& found, Turning& turning, Instant t)
   }
 }
 
-/// Gathers what touches, with gaps that can be held. Where that brings one nearer to what passes
-/// by, this makes way, too; and where that does not help, gaps may be larger than they need to be.
-bool EventModes::make_room(std::span<const BodyIndex> seeds, Instant t, SettleOptions options,
-                           Gathered& found, Turning& turning) {
-  for (const auto& [near, at_least] : {std::pair{false, false}, {true, false}, {true, true}}) {
-    options.near = near;
-    found = gather(seeds, t, options);
-    turning = {};
-    why_not_ = found.refusal.empty() ? why_not_turn(found, t) : found.refusal;
-    if (why_not_.empty()) {
-      why_not_ = add_touches(found, t, turning);
-    }
-    if (!why_not_.empty()) {
-      return false;
-    }
-    const std::vector<BodyState> before = found.states;
-    lift(found, turning, t, at_least);
-    if (has_room(before, found, t)) {
-      return true;
-    }
-  }
-  why_not_ = "a body turns, and another is too near to it";
-  return false;
-}
-
-/// Whether one of these has turned while it touched, now or before.
-bool EventModes::has_turned(std::span<const BodyIndex> bodies) const {
-  return std::any_of(bodies.begin(), bodies.end(),
-                     [&](BodyIndex i) { return has_turned_[i].once; });
-}
-
-/// Why these are not even tried: there are too many of them, or they have had their share of work.
-std::string EventModes::why_not_turn(const Gathered& found, Instant t) const {
-  const auto free = std::count_if(found.bodies.begin(), found.bodies.end(),
-                                  [&](BodyIndex i) { return run_.model.is_free(i); });
-  if (free > TurningLimits::most_bodies && has_joints(found)) {
-    return fmt::format("more than {} bodies on joints that touch each other turn",
-                       TurningLimits::most_bodies);
-  }
-  const double frame = std::floor(t.seconds / run_.mean_frame);
-  for (const BodyIndex i : found.bodies) {
-    if (has_turned_[i].frame == frame && has_turned_[i].steps >= TurningLimits::most_steps) {
-      return fmt::format("'{}', which turns, takes more than {} steps in a frame",
-                         run_.model.body(i).name, TurningLimits::most_steps);
-    }
-  }
-  return {};
-}
-
-/// What is counted of a body in the frame of `t`.
-EventModes::Turned& EventModes::turned_in_frame(BodyIndex i, Instant t) {
-  Turned& turned = has_turned_[i];
-  const double frame = std::floor(t.seconds / run_.mean_frame);
-  if (turned.frame != frame) {
-    turned = {.once = turned.once, .frame = frame};
-  }
-  return turned;
-}
-
-void EventModes::count_step(const Gathered& found, Instant t) {
-  for (const BodyIndex i : found.bodies) {
-    if (run_.model.is_free(i)) {
-      Turned& turned = turned_in_frame(i, t);
-      turned.once = true;
-      ++turned.steps;
-    }
-  }
-}
-
-/// Where nothing is found, again and again, each search takes half as long as the one before.
-void EventModes::count_search(const Gathered& found, const Turning& turning, Instant t) {
-  for (const BodyIndex i : found.bodies) {
-    if (run_.model.is_free(i) && turning.mode.searched) {
-      Turned& turned = turned_in_frame(i, t);
-      turned.in_vain = turning.mode.refusal.empty() ? 0 : turned.in_vain + 1;
-    }
-  }
-}
-
-/// How many times the longest search for forces of a group is halved.
-int EventModes::in_vain(const Gathered& found, Instant t) {
-  int most = 0;
-  for (const BodyIndex i : found.bodies) {
-    if (run_.model.is_free(i)) {
-      most = std::max(most, turned_in_frame(i, t).in_vain);
-    }
-  }
-  return std::min(most, TurningLimits::most_halvings);
-}
-
-void EventModes::Turned::persist(Archive& archive) { archive(once, frame, steps, in_vain); }
-void EventModes::persist(Archive& archive) {
-  archive(has_turned_);
-  archive.require(has_turned_.size() == run_.model.size());
-}
-
-/// Whether some of these have turned while they touch.
-bool EventModes::turned(std::span<const BodyIndex> bodies) {
-  return std::any_of(bodies.begin(), bodies.end(), [&](BodyIndex i) {
-    const auto& partners = graph_.partners(i);
-    return std::any_of(partners.begin(), partners.end(),
-                       [&](BodyIndex j) { return graph_.find(i, j)->turns; });
-  });
-}
-
-/// How many steps of a group in a row got nowhere.
-int EventModes::short_steps(const Gathered& found) const {
-  int most = 0;
-  for (const auto& [a, b] : found.pairs) {
-    const Patch* const patch = graph_.find(a, b);
-    most = std::max(most, patch != nullptr ? patch->short_steps : 0);
-  }
-  return most;
-}
-
-/// How long the next step of a group may be, as its last ones tell, s.
-double EventModes::next_step(const Gathered& found) {
-  double longest = std::numeric_limits<double>::infinity();
-  for (const auto& [a, b] : found.pairs) {
-    const Patch* const patch = graph_.find(a, b);
-    if (patch != nullptr && patch->step > 0.0) {
-      longest = std::min(longest, patch->step);
-    }
-  }
-  return longest;
-}
-
 /// The touches that are at rest along their normals, and the planes between bodies; why there are
 /// none.
 std::string EventModes::add_touches(Gathered& found, Instant t, Turning& turning) const {
@@ -440,18 +313,6 @@ std::string EventModes::add_rims(const Gathered& found, Turning& turning) const 
   return {};
 }
 
-/// Gaps that are too small to be held are made larger, `at_least`: maybe others, too; then touches
-/// are those alone that are at rest along their normals.
-void EventModes::lift(Gathered& found, Turning& turning, Instant t, bool at_least) {
-  TurningState& start = turning.group.start;
-  raise(found, turning, t, at_least);
-  std::erase_if(start.touches, [&](const Touch& touch) {
-    const TouchNow now = look_at(touch, start.states[touch.a], start.states[touch.b]);
-    return found.passes[touch.pair] != 0 ||
-           std::abs(now.normal.dot(now.velocity)) > found.group.patches[touch.pair].rest_speed;
-  });
-}
-
 /// What parts slower than a hop worth the name is taken for rest. Where that contradicts itself it
 /// hops: touches that part faster than `roundoff`, m/s, are none; false if there are none of these,
 /// or no others.
@@ -528,73 +389,6 @@ void EventModes::tell_jam(const Gathered& found, const Turning& turning, Instant
   }
 }
 
-void EventModes::raise(Gathered& found, Turning& turning, Instant t, bool at_least) {
-  TurningState& start = turning.group.start;
-  const std::vector<char> all(start.touches.size(), 1);
-  std::vector<double> missing(turning.group.pairs.size(), 0.0);
-  for (Touch& touch : start.touches) {
-    const double nearest = turning.group.pairs[touch.pair].nearest;
-    if (found.passes[touch.pair] != 0) {
-      touch.gap = std::max(touch.gap, 0.0);
-    } else if (touch.gap < 0.5 * nearest) {
-      missing[touch.pair] = std::max(missing[touch.pair], nearest - touch.gap);
-    }
-  }
-  if (std::all_of(missing.begin(), missing.end(), [](double x) { return x == 0.0; })) {
-    return;
-  }
-  for (Touch& touch : start.touches) {
-    touch.gap += missing[touch.pair];
-  }
-  if (!at_least || !put_clear(start)) {
-    put_at_gaps(start, all);
-  }
-  for (Touch& touch : start.touches) {
-    touch.gap = look_at(touch, start.states[touch.a], start.states[touch.b]).gap;
-  }
-  for (std::size_t k = 0; k < found.bodies.size(); ++k) {
-    if (run_.model.is_free(found.bodies[k])) {
-      found.states[k].pose = start.states[k].pose;
-      start.bodies[k] = group_body(turning.group.inertia[k], start.states[k].pose);
-    }
-  }
-  start.joints = group_joints(turning.group.mechanisms, t, start.states);
-}
-
-/// Whether bodies whose gaps were made larger stay clear of all others: those of the group, too,
-/// that they do not rest on.
-bool EventModes::has_room(std::span<const BodyState> before, const Gathered& found, Instant t) {
-  std::vector<Neighbour> near;
-  for (std::size_t k = 0; k < found.bodies.size(); ++k) {
-    const BodyIndex i = found.bodies[k];
-    const Pose& was = before[k].pose;
-    const Pose& is = found.states[k].pose;
-    if (!run_.model.is_free(i) ||
-        (was.position == is.position && was.orientation.coeffs() == is.orientation.coeffs())) {
-      continue;
-    }
-    near.clear();
-    predictor_.solids_near(i, near);
-    for (const auto& [j, image] : near) {
-      const std::size_t place = found.place(j);
-      const bool here = place < found.bodies.size();
-      Pose other_was = here ? before[place].pose : motions_.at(j, t).pose;
-      Pose other_is = here ? found.states[place].pose : other_was;
-      if (const auto& box = run_.model.scene().periodic) {
-        other_was.position += box->shift(image);
-        other_is.position += box->shift(image);
-      }
-      const Shape& own = run_.model.shape(i);
-      const Shape& other = run_.model.shape(j);
-      const double gap = run_.detector.overlap(own, is, other, other_is).gap;
-      if (gap < 0.0 && gap < run_.detector.overlap(own, was, other, other_was).gap) {
-        return false;
-      }
-    }
-  }
-  return true;
-}
-
 /// Nothing presses those that come to rest on each other: they go on by themselves, and none
 /// approaches another any more. What took an impulse has been in contact, and is told.
 bool EventModes::part_ways(const Gathered& found, Turning& turning, Instant t, const Adopt& adopt) {
@@ -650,31 +444,6 @@ bool EventModes::fly(const Gathered& found, const Turning& turning, Instant t, c
   book_lift(found, t);
   commit(found, mode, t, adopt);
   return true;
-}
-
-/// What gaps that were made larger did to the energy.
-void EventModes::book_lift(const Gathered& found, Instant t) {
-  for (const BodyIndex first : found.bodies) {
-    const Island* const island =
-        run_.model.is_free(first) ? &run_.model.islands()[run_.model.island_of(first)] : nullptr;
-    if (island == nullptr || island->bodies.front() != first) {
-      continue;
-    }
-    motions_.book(first, t);
-    std::vector<BodyState> before;
-    std::vector<BodyState> after;
-    for (const BodyIndex i : island->bodies) {
-      after.push_back(found.states[found.place(i)]);
-      // What it was is asked of its motion: `now` may have been drawn since it was brought.
-      before.push_back(after.back());
-      before.back().pose = motions_.at(i, t).pose;
-    }
-    run_.account.moved(*island, t, before, after);
-    for (std::size_t k = 0; k < before.size(); ++k) {
-      run_.ledger.add(EnergyLine::position_correction,
-                      run_.account.gained(island->bodies[k], before[k], after[k]));
-    }
-  }
 }
 
 /// The group moves on as the step found, and is looked at again where that ends.
