@@ -132,7 +132,8 @@ FirstDescent first_descent(const QuadraticGap& gap, double touch) {
     return lost_in_error(gap);
   }
   if (gap.c2 == 0.0) {
-    return rounded_outwards(gap, -gap.c0 / gap.c1, 0.0, infinity);
+    const double root = -gap.c0 / gap.c1;  // none that a number holds, at subnormal speeds
+    return std::isfinite(root) ? rounded_outwards(gap, root, 0.0, infinity) : lost_in_error(gap);
   }
   return descent_of_convex(gap);
 }

@@ -627,6 +627,25 @@ TEST_CASE("friction: what is redundant and presses nothing rubs nothing", "[fric
 
 // Balls in corners roll on two walls at once, where forces are redundant: some are at the edge of
 // their cones, and yet nothing begins to slide.
+TEST_CASE("friction: a box comes down on one that lies on a floor which returns all of its speed",
+          "[friction]") {
+  // The lower one rattles on its corners, and the upper one alone takes energy from its hops.
+  for (const double tilt : {1e-6, 1e-3}) {
+    for (const double e : {0.0, 0.5}) {
+      for (const double mu : {0.1, 0.6}) {
+        const double part = tilt * std::sqrt(0.125);
+        const std::string turned =
+            fmt::format("orientation = [{}, {}, 0, {}]", 1.0 - tilt * tilt / 8.0, part, part);
+        const std::string text = head(0.5, mu) + plane("floor") +
+                                 box("lower", {0.1, 0.05, 0.1}, {0, 0.05, 0}, "", 1.0) +
+                                 box("upper", {0.1, 0.1, 0.1}, {0.01, 0.25, 0.005}, turned, e);
+        CAPTURE(tilt, e, mu);
+        check_whole(run(text), text);
+      }
+    }
+  }
+}
+
 TEST_CASE("friction: ten balls in a bin go on to the end", "[friction]") {
   for (const int seed : {1, 2, 3, 4}) {
     const Simulation sim = simulate(

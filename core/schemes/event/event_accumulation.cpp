@@ -108,7 +108,18 @@ double EventAccumulation::rest_tolerance(BodyIndex a, BodyIndex b, double e) con
   const double coordinate = std::max(motions_.now(a).pose.position.cwiseAbs().maxCoeff(),
                                      motions_.now(b).pose.position.cwiseAbs().maxCoeff());
   return rest_tolerance(extent, coordinate,
-                        e < 1.0 || motions_.is_damped(a) || motions_.is_damped(b));
+                        e < 1.0 || motions_.is_damped(a) || motions_.is_damped(b) ||
+                            met_inelastic(a) || met_inelastic(b));
+}
+
+/// Whether a body, no ball, lately met one that does not return all of its speed. Between that and
+/// one that does its hops die down, too, on one corner or another, where no collapse is seen.
+bool EventAccumulation::met_inelastic(BodyIndex i) const {
+  if (!run_.model.is_free(i) || std::holds_alternative<Sphere>(run_.model.shape(i))) {
+    return false;
+  }
+  const std::vector<BodyIndex> met = histories_[i].partners();
+  return std::any_of(met.begin(), met.end(), [&](BodyIndex j) { return restitution(i, j) < 1.0; });
 }
 
 double EventAccumulation::rest_tolerance(double extent, double coordinate, bool dies_down) {

@@ -18,8 +18,9 @@ class EventAccumulation {
  public:
   EventAccumulation(EventRun& run, const EventMotions& motions);
 
-  /// How small a hop is taken for rest, m: where hops die down those that would follow are summed
-  /// up, so that the height only has to be far below anything measured; otherwise only what is
+  /// How small a hop is taken for rest, m: where hops die down (against one of the bodies, or
+  /// against another that they lately met) those that would follow are summed up, so that the
+  /// height only has to be far below anything measured; otherwise only what is
   /// near the roundoff of coordinates and extents.
   [[nodiscard]] double rest_tolerance(BodyIndex a, BodyIndex b, double e) const;
 
@@ -84,6 +85,7 @@ class EventAccumulation {
   void persist(Archive& archive);
 
  private:
+  [[nodiscard]] bool met_inelastic(BodyIndex i) const;
   [[nodiscard]] static double rest_tolerance(double extent, double coordinate, bool dies_down);
   [[nodiscard]] Finding conclude(BodyIndex a, BodyIndex b, double tolerance, bool resting,
                                  Instant t) const;
