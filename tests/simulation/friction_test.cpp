@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <regex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -644,6 +645,16 @@ TEST_CASE("friction: a box comes down on one that lies on a floor which returns 
       }
     }
   }
+}
+
+TEST_CASE("friction: a box comes down on another where all speed is returned, and friction rubs",
+          "[friction]") {
+  // Friction alone takes energy from what rattles between the upper one and the floor.
+  const std::string text =
+      head(0.5, 0.6) + plane("floor") + box("lower", {0.1, 0.05, 0.1}, {0, 0.05, 0}, "", 1.0) +
+      box("upper", {0.1, 0.1, 0.1}, {0.01, 0.25, 0.005},
+          "orientation = [1, 3.5355339059327375e-7, 0, 3.5355339059327375e-7]", 1.0);
+  check_whole(run(std::regex_replace(text, std::regex("mass = 1.0"), "mass = 5.0")), text);
 }
 
 TEST_CASE("friction: ten balls in a bin go on to the end", "[friction]") {

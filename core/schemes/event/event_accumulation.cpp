@@ -109,17 +109,20 @@ double EventAccumulation::rest_tolerance(BodyIndex a, BodyIndex b, double e) con
                                      motions_.now(b).pose.position.cwiseAbs().maxCoeff());
   return rest_tolerance(extent, coordinate,
                         e < 1.0 || motions_.is_damped(a) || motions_.is_damped(b) ||
-                            met_inelastic(a) || met_inelastic(b));
+                            lately_lost(a) || lately_lost(b));
 }
 
-/// Whether a body, no ball, lately met one that does not return all of its speed. Between that and
-/// one that does its hops die down, too, on one corner or another, where no collapse is seen.
-bool EventAccumulation::met_inelastic(BodyIndex i) const {
+/// Whether a body, no ball, lately met one that does not return all of its speed, or several of
+/// which one rubs. Between that and one that does return it its hops die down, too, on one corner
+/// or another, where no collapse is seen.
+bool EventAccumulation::lately_lost(BodyIndex i) const {
   if (!run_.model.is_free(i) || std::holds_alternative<Sphere>(run_.model.shape(i))) {
     return false;
   }
   const std::vector<BodyIndex> met = histories_[i].partners();
-  return std::any_of(met.begin(), met.end(), [&](BodyIndex j) { return restitution(i, j) < 1.0; });
+  return std::any_of(met.begin(), met.end(), [&](BodyIndex j) {
+    return restitution(i, j) < 1.0 || (met.size() > 1 && run_.model.friction(i, j) > 0.0);
+  });
 }
 
 double EventAccumulation::rest_tolerance(double extent, double coordinate, bool dies_down) {

@@ -85,7 +85,7 @@ class EventAccumulation {
   void persist(Archive& archive);
 
  private:
-  [[nodiscard]] bool met_inelastic(BodyIndex i) const;
+  [[nodiscard]] bool lately_lost(BodyIndex i) const;
   [[nodiscard]] static double rest_tolerance(double extent, double coordinate, bool dies_down);
   [[nodiscard]] Finding conclude(BodyIndex a, BodyIndex b, double tolerance, bool resting,
                                  Instant t) const;
