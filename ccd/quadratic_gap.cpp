@@ -6,32 +6,6 @@
 namespace kairos::ccd {
 namespace {
 
-/// Moves both ends of the bracket away from the root until the signs are proven. `earliest`: the
-/// gap is known to be positive from there to the root; `latest`: it descends until there.
-FirstDescent rounded_outwards(const QuadraticGap& gap, double root, double earliest,
-                              double latest) {
-  const double slope = std::abs(gap.rate(root));
-  const double error = gap.error(root);
-  // How long the gap takes to change by its error: at this slope, or (from rest) by its curvature.
-  const double by_slope = slope > 0.0 ? error / slope : 0.0;
-  const double margin =
-      2.0 * ulp(root) + (gap.c2 < 0.0 ? std::min(by_slope, std::sqrt(error / -gap.c2)) : by_slope);
-  FirstDescent found{Descent::found, std::max(earliest, root - margin), root + margin};
-  for (double wider = margin; found.t_lo > earliest && gap(found.t_lo) <= gap.error(found.t_lo);) {
-    wider *= 2.0;
-    found.t_lo = std::max(earliest, root - wider);
-  }
-  if (found.t_lo == earliest && gap(earliest) > gap.error(earliest)) {
-    found.t_lo = last_proven(gap, earliest, root);
-  }
-  for (double wider = margin;
-       found.t_hi < latest && gap(found.t_hi) > -gap.error(found.t_hi) && std::isfinite(wider);) {
-    wider *= 2.0;
-    found.t_hi = root + wider;
-  }
-  return found;
-}
-
 /// c less its error, from below; c itself where it is exact.
 double from_below(double c, double e) {
   return e > 0.0 ? c - e - 2.0 * unit_roundoff * std::abs(c) : c;
@@ -73,6 +47,35 @@ FirstDescent lost_in_error(const QuadraticGap& gap) {
   return std::isfinite(later)
              ? FirstDescent{Descent::grazing, last_proven(gap, 0.0, later), infinity}
              : FirstDescent{};
+}
+
+/// Moves both ends of the bracket away from the root until the signs are proven. `earliest`: the
+/// gap is known to be positive from there to the root; `latest`: it descends until there.
+FirstDescent rounded_outwards(const QuadraticGap& gap, double root, double earliest,
+                              double latest) {
+  if (!std::isfinite(root)) {  // at subnormal rates it comes later than any number tells
+    return lost_in_error(gap);
+  }
+  const double slope = std::abs(gap.rate(root));
+  const double error = gap.error(root);
+  // How long the gap takes to change by its error: at this slope, or (from rest) by its curvature.
+  const double by_slope = slope > 0.0 ? error / slope : 0.0;
+  const double margin =
+      2.0 * ulp(root) + (gap.c2 < 0.0 ? std::min(by_slope, std::sqrt(error / -gap.c2)) : by_slope);
+  FirstDescent found{Descent::found, std::max(earliest, root - margin), root + margin};
+  for (double wider = margin; found.t_lo > earliest && gap(found.t_lo) <= gap.error(found.t_lo);) {
+    wider *= 2.0;
+    found.t_lo = std::max(earliest, root - wider);
+  }
+  if (found.t_lo == earliest && gap(earliest) > gap.error(earliest)) {
+    found.t_lo = last_proven(gap, earliest, root);
+  }
+  for (double wider = margin;
+       found.t_hi < latest && gap(found.t_hi) > -gap.error(found.t_hi) && std::isfinite(wider);) {
+    wider *= 2.0;
+    found.t_hi = root + wider;
+  }
+  return found;
 }
 
 /// The gap opens upwards and approaches: it may dip below zero, graze it, or stay above.
@@ -132,8 +135,7 @@ FirstDescent first_descent(const QuadraticGap& gap, double touch) {
     return lost_in_error(gap);
   }
   if (gap.c2 == 0.0) {
-    const double root = -gap.c0 / gap.c1;  // none that a number holds, at subnormal speeds
-    return std::isfinite(root) ? rounded_outwards(gap, root, 0.0, infinity) : lost_in_error(gap);
+    return rounded_outwards(gap, -gap.c0 / gap.c1, 0.0, infinity);
   }
   return descent_of_convex(gap);
 }

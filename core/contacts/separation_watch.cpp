@@ -65,6 +65,7 @@ struct Candidate {
   bool of_a = false;
   const Touch* touch = nullptr;  ///< or through it
   double bend = 0.0;             ///< bound of second derivatives of heights, m/s^2
+  double least = 0.0;            ///< what comes nearer strikes, m
 };
 
 bool belongs(const TouchFeature& corner, const TouchFeature& held) {
@@ -100,51 +101,19 @@ class Watcher {
   }
 
   double strike_time() {
-    Look start(*this, 0.0);
-    bool some_separates = false;
-    for (std::size_t c = 0; c < candidates_.size() && !some_separates; ++c) {
-      some_separates = height(c, start) > 0.0;
+    std::vector<double> start = heights(0.0);
+    if (std::none_of(start.begin(), start.end(), [](double height) { return height > 0.0; })) {
+      add_spare();
+      start = heights(0.0);
     }
-    if (!some_separates) {
-      add_spare(start);
-      start.heights.resize(candidates_.size(), not_asked);
+    for (std::size_t c = 0; c < candidates_.size(); ++c) {
+      // Corners that are nearer already may stay so while they draw away.
+      candidates_[c].least = watch_.least * std::min(watch_.pair.nearest, start[c]);
     }
-    // Corners that are nearer already may stay so while they draw away.
-    const auto limit = [&](std::size_t c) {
-      return std::max(watch_.least * std::min(watch_.pair.nearest, height(c, start)), 0.0);
-    };
-    Look end(*this, duration_);
-    return safe_until(start, end, limit);
+    return safe_until(0.0, start, duration_, heights(duration_));
   }
 
  private:
-  /// A height that nobody has asked for yet.
-  static constexpr double not_asked = std::numeric_limits<double>::quiet_NaN();
-
-  /// The two at s, where all their corners are, as planes ask for the same ones, and how high they
-  /// are over each plane, as far as that was asked.
-  struct Look {
-    double s;
-    BodyState a;
-    BodyState b;
-    std::vector<Vector3> corners_a;
-    std::vector<Vector3> corners_b;
-    std::vector<double> heights;
-
-    Look(const Watcher& of, double at)
-        : s(at), a{of.watch_.motion_a.pose(s), {}}, b{of.watch_.motion_b.pose(s), {}} {
-      corners_a.reserve(of.watch_.pair.corners_a.size());
-      corners_b.reserve(of.watch_.pair.corners_b.size());
-      for (const TouchFeature& corner : of.watch_.pair.corners_a) {
-        corners_a.push_back(a.pose.to_world(corner.at));
-      }
-      for (const TouchFeature& corner : of.watch_.pair.corners_b) {
-        corners_b.push_back(b.pose.to_world(corner.at));
-      }
-      heights.resize(of.candidates_.size(), not_asked);
-    }
-  };
-
   [[nodiscard]] double reach(const TouchFeature& f) const { return f.at.norm(); }
 
   /// `but_held`: what is held on such a face is not asked about.
@@ -181,12 +150,13 @@ class Watcher {
   /// holds is over the rim, or behind it. Two polytopes that are apart are so along a face of one
   /// of them, or across an edge of each [Gottschalk1996]: of these the plane along which they are
   /// apart most.
-  void add_spare(const Look& at) {
+  void add_spare() {
     const TurningPair& pair = watch_.pair;
     if (pair.shape_a == nullptr || pair.shape_b == nullptr || pair.corners_a.empty() ||
         pair.corners_b.empty()) {
       return;
     }
+    const Placed at(*this, 0.0);
     double best = 0.0;
     const auto is_best = [&](const TouchFeature* face, bool of_a, const Touch* edges) {
       const Candidate c{.corners_a = all_of(pair.corners_a),
@@ -316,6 +286,24 @@ class Watcher {
     candidates_.push_back(std::move(c));
   }
 
+  /// The two at s, and where all their corners are: planes ask for the same ones.
+  struct Placed {
+    BodyState a;
+    BodyState b;
+    std::vector<Vector3> corners_a;
+    std::vector<Vector3> corners_b;
+
+    Placed(const Watcher& of, double s)
+        : a{of.watch_.motion_a.pose(s), {}}, b{of.watch_.motion_b.pose(s), {}} {
+      for (const TouchFeature& corner : of.watch_.pair.corners_a) {
+        corners_a.push_back(a.pose.to_world(corner.at));
+      }
+      for (const TouchFeature& corner : of.watch_.pair.corners_b) {
+        corners_b.push_back(b.pose.to_world(corner.at));
+      }
+    }
+  };
+
   [[nodiscard]] static std::vector<std::size_t> all_of(const std::vector<TouchFeature>& corners) {
     std::vector<std::size_t> all(corners.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
@@ -334,7 +322,7 @@ class Watcher {
     return least;
   }
 
-  [[nodiscard]] double height(const Candidate& c, const Look& at) const {
+  [[nodiscard]] double height(const Candidate& c, const Placed& at) const {
     const TurningPair& pair = watch_.pair;
     if (c.plane != nullptr) {
       const Pose& carrier = c.of_a ? at.a.pose : at.b.pose;
@@ -351,38 +339,32 @@ class Watcher {
     return now.gap + std::min({of_a, of_b, of_a + of_b});
   }
 
-  [[nodiscard]] double height(std::size_t c, Look& at) const {
-    double& known = at.heights[c];
-    if (std::isnan(known)) {
-      known = height(candidates_[c], at);
+  [[nodiscard]] std::vector<double> heights(double s) const {
+    const Placed at(*this, s);
+    std::vector<double> out;
+    for (const Candidate& c : candidates_) {
+      out.push_back(height(c, at));
     }
-    return known;
+    return out;
   }
 
-  /// The last time between two looks up to which some plane is known to separate.
-  template <class Limit>
-  double safe_until(Look& from, Look& to, const Limit& limit) {
-    const double ds = to.s - from.s;
-    const auto separates = [&](std::size_t c) {
-      return std::min(height(c, from), height(c, to)) - 0.125 * ds * ds * candidates_[c].bend >
-             limit(c);
-    };
-    // The plane that separated last is likely to do so again.
-    if (last_ < candidates_.size() && separates(last_)) {
-      return to.s;
-    }
+  /// The last time in [s0, s1] up to which some plane is known to separate.
+  double safe_until(double s0, const std::vector<double>& h0, double s1,
+                    const std::vector<double>& h1) {
+    const double ds = s1 - s0;
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
-      if (c != last_ && separates(c)) {
-        last_ = c;
-        return to.s;
+      if (std::min(h0[c], h1[c]) - 0.125 * ds * ds * candidates_[c].bend >
+          std::max(candidates_[c].least, 0.0)) {
+        return s1;
       }
     }
     if (ds <= finest * duration_) {
-      return from.s;
+      return s0;
     }
-    Look middle(*this, 0.5 * (from.s + to.s));
-    const double until = safe_until(from, middle, limit);
-    return until < middle.s ? until : safe_until(middle, to, limit);
+    const double middle = 0.5 * (s0 + s1);
+    const std::vector<double> hm = heights(middle);
+    const double until = safe_until(s0, h0, middle, hm);
+    return until < middle ? until : safe_until(middle, hm, s1, h1);
   }
 
   const SeparationWatch& watch_;
@@ -390,7 +372,6 @@ class Watcher {
   Bounds b_;
   double duration_;
   std::vector<Candidate> candidates_;
-  std::size_t last_ = 0;     ///< of the candidates
   TouchFeature spare_face_;  ///< what one of them may be through
   Touch spare_edges_;
 };

@@ -18,10 +18,10 @@ class EventAccumulation {
  public:
   EventAccumulation(EventRun& run, const EventMotions& motions);
 
-  /// How small a hop is taken for rest, m: where hops die down (against one of the bodies, or
-  /// against another that they lately met) those that would follow are summed up, so that the
-  /// height only has to be far below anything measured; otherwise only what is
-  /// near the roundoff of coordinates and extents.
+  /// How small a hop is taken for rest, m: where hops die down, between the two or because of
+  /// another that one of them lately met, those that would follow are summed up, so that the height
+  /// only has to be far below anything measured; otherwise only what is near the roundoff of
+  /// coordinates and extents.
   [[nodiscard]] double rest_tolerance(BodyIndex a, BodyIndex b, double e) const;
 
   /// What impacts come to.
