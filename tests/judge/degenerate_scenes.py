@@ -19,6 +19,7 @@ import argparse
 import collections
 import concurrent.futures
 import csv
+import functools
 import itertools
 import json
 import math
@@ -351,12 +352,12 @@ def deepest(bodies, poses):
 
 
 class Run:
-    def __init__(self, program, folder, name, scene, options):
+    def __init__(self, program, folder, name, scene, options, seconds=SECONDS):
         self.folder = folder / name
         file = folder / "scene.toml"
         file.write_text(scene.toml())
         (folder / "hand.csv").write_text(scene.track)
-        limit = ["sh", "-c", f'ulimit -t {SECONDS}; exec "$@"', "sh"]
+        limit = ["sh", "-c", f'ulimit -t {seconds}; exec "$@"', "sh"]
         command = [*limit, program, "run", file, "--out", self.folder, *options]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         self.code, self.words = done.returncode, done.stderr
@@ -415,26 +416,27 @@ def pose(row):
 
 
 def again(program, folder, scene, options, first, rng):
-    """The same scene where nothing may change."""
+    """The same scene where nothing may change: neither does the work, but for noise."""
+    run = functools.partial(Run, program, folder, seconds=2 * SECONDS)
     way = rng.choice(["order", "resume", "frame"])
     if way == "order":
         mixed = list(scene.bodies)
         rng.shuffle(mixed)
         bodies, scene.bodies = scene.bodies, mixed
-        other = Run(program, folder, "order", scene, options)
+        other = run("order", scene, options)
         scene.bodies = bodies
         if other.code != first.code or other.states() != first.states():
             return ["another order of bodies, another end"]
     elif way == "resume":
         part = [*options, "--duration", repr(scene.duration * rng.choice([0.3, 0.5, 0.71]))]
-        Run(program, folder, "part", scene, [*part, "--save", folder / "checkpoint"])
+        run("part", scene, [*part, "--save", folder / "checkpoint"])
         if (folder / "checkpoint").exists():
-            whole = Run(program, folder, "whole", scene, options)
-            rest = Run(program, folder, "rest", scene, [*options, "--resume", folder / "checkpoint"])
+            whole = run("whole", scene, options)
+            rest = run("rest", scene, [*options, "--resume", folder / "checkpoint"])
             if rest.code != whole.code or (rest.code in (0, 1) and rest.bytes() != whole.bytes()):
                 return ["resumed, and other bytes"]
     else:
-        other = Run(program, folder, "frame", scene, [*options, "--frame", repr(scene.frame / 2)])
+        other = run("frame", scene, [*options, "--frame", repr(scene.frame / 2)])
         found = other.faults(scene.bodies)
         if found:
             return [f"half the frame time: {f}" for f in found]
