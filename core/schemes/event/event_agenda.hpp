@@ -162,8 +162,8 @@ class Agenda : private EventCalendar::Source {
   [[nodiscard]] EventCalendar::Entry due(std::uint32_t body) const override;
   template <typename See>
   void show(const EventCalendar::Entry& entry, const See& see) const {
-    constexpr std::uint64_t of_rank = 0xffffffffU;
-    see(by_name_[entry.key & of_rank], by_name_[entry.key2]);
+    const auto rank = [](std::uint64_t key) { return static_cast<std::uint32_t>(key); };
+    see(by_name_[rank(entry.key)], by_name_[rank(entry.key2)]);
   }
   [[nodiscard]] DueEvent pop_record(const EventCalendar::Entry& first);
 

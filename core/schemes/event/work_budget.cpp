@@ -45,7 +45,7 @@ WorkBudget::Spent WorkBudget::spend(const DueEvent& event) {
 
 std::vector<WorkBudget::Share> WorkBudget::busiest() const {
   const Count& last = counts_[last_];
-  const std::size_t n = std::min<std::uint64_t>(last.taken, remembered);
+  const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(last.taken, remembered));
   std::map<std::pair<BodyIndex, BodyIndex>, int> counts;
   for (std::size_t k = 0; k < n; ++k) {
     ++counts[std::minmax(last.latest[k].a, last.latest[k].b)];
