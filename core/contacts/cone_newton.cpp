@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace kairos {
 inline namespace core {
@@ -28,15 +29,42 @@ constexpr int most_unsolved = 3;
 /// See `AtOnce::bounded`.
 constexpr double nearly_rough = 100.0;
 
+/// Impulses to begin with. What friction jams, as a wedge, has far larger ones than what it began
+/// with.
+enum class Start { given, nothing, all_stick };
+
+/// Newton's step. What opens has rows with nothing but an element of its own: it is known, and the
+/// others' system is smaller without it.
+VectorXd newton_step(const Eigen::MatrixXd& J, const VectorXd& off) {
+  VectorXd step = VectorXd::Zero(off.size());
+  std::vector<Eigen::Index> left;
+  for (Eigen::Index i = 0; i < off.size(); ++i) {
+    if ((J.row(i).array() != 0.0).count() == 1 && J(i, i) != 0.0) {
+      step[i] = off[i] / J(i, i);
+    } else {
+      left.push_back(i);
+    }
+  }
+  if (!left.empty()) {
+    const VectorXd rest = off - J * step;
+    step(left) = least_norm(J(left, left), rest(left));
+  }
+  return step;
+}
+
 }  // namespace
 
 ConeImpulses cone_newton(const ConeProblem& problem, const VectorXd& begin, double settled) {
   const ConeProjections projections(problem);
   ConeImpulses nearest{begin, projections.off(begin).lpNorm<Eigen::Infinity>()};
-  for (VectorXd p : {begin, VectorXd(VectorXd::Zero(begin.size()))}) {
+  for (const Start start : {Start::given, Start::nothing, Start::all_stick}) {
+    VectorXd p = start == Start::given ? begin : VectorXd(VectorXd::Zero(begin.size()));
+    if (start == Start::all_stick && nearest.off > settled) {
+      p = least_norm(problem.W, -problem.q);
+    }
     for (int steps = 0, idle = 0; idle < most_idle && steps < most_steps && nearest.off > settled;
          ++steps, ++idle) {
-      p -= least_norm(projections.change(p), projections.off(p));
+      p -= newton_step(projections.change(p), projections.off(p));
       const double off = projections.off(p).lpNorm<Eigen::Infinity>();
       if (!std::isfinite(off)) {
         break;

@@ -12,7 +12,8 @@ inline namespace core {
 /// Newton's method on the projections onto the cones, which are differentiable in pieces
 /// [AlartCurnier1991]; of the steps that are as good the shortest, as touches may be redundant. It
 /// comes to the end in few steps where sweeps touch by touch hardly move: light bodies between
-/// heavy ones, wedges. It may go round in a circle; then it starts once more without impulses.
+/// heavy ones, wedges. It may go round in a circle; then it starts once more without impulses, and
+/// with those that stop all.
 /// @param begin    impulses to begin with, N s, finite
 /// @param settled  what is near enough, m/s
 /// @returns the impulses that came nearest: maybe those to begin with
