@@ -33,7 +33,8 @@ constexpr int later_in_steps = 4;
 constexpr std::array ways_of_impacts = {AtOnce::newton, AtOnce::admm, AtOnce::proximal,
                                         AtOnce::bounded};
 constexpr std::array ways_of_steps = {AtOnce::newton, AtOnce::admm, AtOnce::newton};
-constexpr std::array last_ways_of_steps = {AtOnce::newton, AtOnce::admm, AtOnce::held_along};
+constexpr std::array last_ways_of_steps = {AtOnce::newton, AtOnce::admm, AtOnce::held_along,
+                                           AtOnce::proximal};
 
 /// When sweeps of a step over many touches are helped by linear systems (`solve_as_found`). What
 /// these give is swept on, and taken back if it has not come nearer in the end. What settles is
@@ -153,7 +154,7 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
   int at_once = blocks_.size() <= most_at_once ? at_once_after : most_sweeps;
   std::span<const AtOnce> ways = ways_of_impacts;
   if (in_step) {
-    ways = last_resort ? last_ways_of_steps : ways_of_steps;
+    ways = last_resort ? std::span<const AtOnce>(last_ways_of_steps) : ways_of_steps;
   }
   if (blocks_.size() > most_for_newton) {
     ways = ways.subspan(1);
@@ -192,7 +193,7 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
       break;
     }
     if (round == at_once && !ways.empty()) {
-      at_once *= in_step ? later_in_steps : later_in_impacts;
+      at_once *= in_step && !last_resort ? later_in_steps : later_in_impacts;
       const AtOnce way = ways.front();
       ways = ways.subspan(1);
       const double off =

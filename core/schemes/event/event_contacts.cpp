@@ -144,7 +144,7 @@ void EventContacts::stay(BodyIndex a, BodyIndex b, Instant t) {
   if (lands(a, b, contact, t) || settle_stalled(pair, t)) {
     return;
   }
-  if (meet_elsewhere(a, b, t) || end_by_pushing(pair, 0.0, t)) {
+  if (meet_elsewhere(a, b, t) || end_by_pushing(pair, 0.0, t) || settle_at_last(pair, t)) {
     return;
   }
   depart(a, b, t);
@@ -161,12 +161,19 @@ bool EventContacts::settle_stalled(std::span<const BodyIndex> seeds, Instant t) 
     return settle(seeds, t,
                   {.turning = true, .may_turn = true, .not_flat = true, .step_over = step_over});
   };
-  const bool settled = (stalled_ > most_in_vain && (settle_turned(false) || settle_turned(true))) ||
-                       settle(seeds, t, {.unloaded = true, .may_turn = true});
-  if (settled) {
-    for (const BodyIndex i : seeds) {
-      accumulation_.go_on(i);
-    }
+  return go_on_if((stalled_ > most_in_vain && (settle_turned(false) || settle_turned(true))) ||
+                      settle(seeds, t, {.unloaded = true, .may_turn = true}),
+                  seeds);
+}
+
+/// The same before a run would stop.
+bool EventContacts::settle_at_last(std::span<const BodyIndex> seeds, Instant t) {
+  return go_on_if(settle(seeds, t, {.may_turn = true, .last_resort = true}), seeds);
+}
+
+bool EventContacts::go_on_if(bool settled, std::span<const BodyIndex> seeds) {
+  for (std::size_t k = 0; k < seeds.size() && settled; ++k) {
+    accumulation_.go_on(seeds[k]);
   }
   return settled;
 }
@@ -252,7 +259,7 @@ void EventContacts::touch(BodyIndex a, BodyIndex b, const Contact& contact, Inst
     if (const double until = comes_together(a, b, t, bracket); until > 0.0) {
       return run_.agenda.push(t + until, DueKind::impact, a, b);
     }
-    if (end_by_pushing(pair, 0.0, t)) {
+    if (end_by_pushing(pair, 0.0, t) || settle_at_last(pair, t)) {
       return;
     }
     depart(a, b, t);

@@ -253,13 +253,13 @@ void EventContacts::go_on_as_found(const Event& event, const EventAccumulation::
   }
   if (finding.kind != Kind::squeezed) {
     const bool unite = finding.kind != Kind::rests;
-    if (settle(pair, t,
-               {.unloaded = unite,
-                .unite = unite,
-                .remaining = finding.remaining,
-                .pairs = finding.pairs,
-                .may_turn = finding.kind != Kind::collapse,
-                .may_part = !finding.endless})) {
+    EventModes::SettleOptions options{.unloaded = unite,
+                                      .unite = unite,
+                                      .remaining = finding.remaining,
+                                      .pairs = finding.pairs,
+                                      .may_turn = finding.kind != Kind::collapse,
+                                      .may_part = !finding.endless};
+    if (settle(pair, t, options)) {
       return;
     }
     if (finding.goes_on) {
@@ -273,7 +273,9 @@ void EventContacts::go_on_as_found(const Event& event, const EventAccumulation::
     const bool known = run_.law.info().needs_contact &&
                        run_.model.mobility(a) != Mobility::driven &&
                        run_.model.mobility(b) != Mobility::driven;
-    if (end_by_pushing(pair, finding.remaining, t, unite && known ? &event : nullptr)) {
+    options.last_resort = true;
+    if (end_by_pushing(pair, finding.remaining, t, unite && known ? &event : nullptr) ||
+        settle(pair, t, options)) {
       return;
     }
   }
@@ -602,17 +604,20 @@ void EventContacts::go_on_from(std::span<const BodyIndex> bodies, const BodyPair
   using Kind = EventAccumulation::Finding::Kind;
   const auto finding = accumulation_.after_impact(first.first, first.second, approach, t);
   const bool unite = finding.kind == Kind::collapse || finding.kind == Kind::creeps;
-  if (settle(bodies, t,
-             {.unloaded = unite,
-              .unite = unite,
-              .remaining = finding.remaining,
-              .pairs = finding.pairs,
-              .may_turn = finding.kind != Kind::none && finding.kind != Kind::collapse,
-              .may_part = !finding.endless})) {
+  EventModes::SettleOptions options{
+      .unloaded = unite,
+      .unite = unite,
+      .remaining = finding.remaining,
+      .pairs = finding.pairs,
+      .may_turn = finding.kind != Kind::none && finding.kind != Kind::collapse,
+      .may_part = !finding.endless};
+  if (settle(bodies, t, options)) {
     return;
   }
   const bool endless = finding.kind != Kind::none && !finding.goes_on;
-  if (endless && finding.kind != Kind::squeezed && end_by_pushing(bodies, finding.remaining, t)) {
+  options.last_resort = true;
+  if (endless && finding.kind != Kind::squeezed &&
+      (end_by_pushing(bodies, finding.remaining, t) || settle(bodies, t, options))) {
     return;
   }
   set_free(bodies, t);
