@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <vector>
 
@@ -52,12 +53,12 @@ VectorXd newton_step(const Eigen::MatrixXd& J, const VectorXd& off) {
   return step;
 }
 
-}  // namespace
-
-ConeImpulses cone_newton(const ConeProblem& problem, const VectorXd& begin, double settled) {
+/// The impulses that came nearest from these starts, one after the other.
+ConeImpulses newton_from(std::initializer_list<Start> starts, const ConeProblem& problem,
+                         const VectorXd& begin, double settled) {
   const ConeProjections projections(problem);
   ConeImpulses nearest{begin, projections.off(begin).lpNorm<Eigen::Infinity>()};
-  for (const Start start : {Start::given, Start::nothing, Start::all_stick}) {
+  for (const Start start : starts) {
     VectorXd p = start == Start::given ? begin : VectorXd(VectorXd::Zero(begin.size()));
     if (start == Start::all_stick && nearest.off > settled) {
       p = least_norm(problem.W, -problem.q);
@@ -79,6 +80,12 @@ ConeImpulses cone_newton(const ConeProblem& problem, const VectorXd& begin, doub
   return nearest;
 }
 
+}  // namespace
+
+ConeImpulses cone_newton(const ConeProblem& problem, const VectorXd& begin, double settled) {
+  return newton_from({Start::given, Start::nothing, Start::all_stick}, problem, begin, settled);
+}
+
 ConeImpulses cone_proximal(const ConeProblem& problem, const VectorXd& begin, double settled) {
   const ConeProjections projections(problem);
   const double scale = problem.W.diagonal().mean();
@@ -92,7 +99,7 @@ ConeImpulses cone_proximal(const ConeProblem& problem, const VectorXd& begin, do
     ConeProblem with = problem;
     with.W.diagonal().array() += compliance;
     with.q -= compliance * p;
-    const ConeImpulses found = cone_newton(with, p, 0.1 * settled);
+    const ConeImpulses found = newton_from({Start::given, Start::nothing}, with, p, 0.1 * settled);
     if (!(found.off <= solved * here)) {
       compliance *= 4.0;
       ++unsolved;

@@ -33,8 +33,7 @@ constexpr int later_in_steps = 4;
 constexpr std::array ways_of_impacts = {AtOnce::newton, AtOnce::admm, AtOnce::proximal,
                                         AtOnce::bounded};
 constexpr std::array ways_of_steps = {AtOnce::newton, AtOnce::admm, AtOnce::newton};
-constexpr std::array last_ways_of_steps = {AtOnce::newton, AtOnce::admm, AtOnce::held_along,
-                                           AtOnce::proximal};
+constexpr std::array last_ways_of_steps = {AtOnce::newton, AtOnce::admm, AtOnce::held_along};
 
 /// When sweeps of a step over many touches are helped by linear systems (`solve_as_found`). What
 /// these give is swept on, and taken back if it has not come nearer in the end. What settles is
@@ -140,7 +139,7 @@ double ContactSweeps::sweep_once(std::span<const Vector3> rates, bool rubs, doub
 ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
                                           std::span<const Vector3> rates,
                                           std::span<const Vector3> begin, double settled, bool rubs,
-                                          bool last_resort) const {
+                                          bool last_resort, int halvings) const {
   Swept swept{std::vector<Vector3>(blocks_.size(), Vector3::Zero()), velocities};
   std::vector<Vector3> along(blocks_.size(), Vector3::Zero());
   for (std::size_t k = 0; k < blocks_.size() && !begin.empty(); ++k) {
@@ -154,14 +153,14 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
   int at_once = blocks_.size() <= most_at_once ? at_once_after : most_sweeps;
   std::span<const AtOnce> ways = ways_of_impacts;
   if (in_step) {
-    ways = last_resort ? std::span<const AtOnce>(last_ways_of_steps) : ways_of_steps;
+    ways = last_resort ? last_ways_of_steps : ways_of_steps;
   }
   if (blocks_.size() > most_for_newton) {
     ways = ways.subspan(1);
   }
   Trial trial;
   double near_enough = settled;
-  for (int round = 0; round < most_sweeps; ++round) {
+  for (int round = 0; round < most_sweeps >> halvings; ++round) {
     swept.changed =
         sweep_once(rates, rubs, round < damped_from ? 1.0 : 0.5, along, swept.velocities);
     swept.solves += static_cast<int>(blocks_.size());
@@ -193,7 +192,7 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
       break;
     }
     if (round == at_once && !ways.empty()) {
-      at_once *= in_step && !last_resort ? later_in_steps : later_in_impacts;
+      at_once *= in_step ? later_in_steps : later_in_impacts;
       const AtOnce way = ways.front();
       ways = ways.subspan(1);
       const double off =

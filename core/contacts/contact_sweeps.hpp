@@ -44,11 +44,11 @@ class ContactSweeps {
   /// @param rates  what is added to the rates, by touch: along the normal and two tangents that
   ///               `axes` tells, m/s; empty: nothing
   /// @param begin  impulses to begin with, by touch, N s; empty: none
-  /// @param last_resort  of a step: where nothing settles, rough touches hold along their surfaces,
-  ///                     or proximal points are looked for
+  /// @param last_resort  of a step: where nothing settles, rough touches hold along their surfaces
+  /// @param halvings  very many are halved so many times
   [[nodiscard]] Swept sweep(std::vector<Vector6> velocities, std::span<const Vector3> rates,
                             std::span<const Vector3> begin, double settled, bool rubs,
-                            bool last_resort = false) const;
+                            bool last_resort = false, int halvings = 0) const;
 
   /// From here on this touch has no friction; whether it had some.
   bool make_smooth(std::size_t touch) { return std::exchange(blocks_[touch].friction, 0.0) != 0.0; }

@@ -121,7 +121,7 @@ bool let_part(std::span<const SweptTouch> touches, const ContactSweeps::Swept& s
 }  // namespace
 
 TurningMode implicit_mode(const TurningState& state, double h, std::span<const Vector3> warm,
-                          bool last_resort) {
+                          bool last_resort, int halvings) {
   TurningMode mode;
   mode.implicit = true;
   if (state.joints != nullptr) {
@@ -163,10 +163,10 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
   }
   const double scale =
       forces.load() * h + fastest * std::numeric_limits<double>::epsilon() / settled;
-  auto swept = sweeps.sweep(velocities, rates, begin, settled * scale, true, last_resort);
+  auto swept = sweeps.sweep(velocities, rates, begin, settled * scale, true, last_resort, halvings);
   mode.solves = swept.solves;
   while (let_part(touches, swept, rates, held * scale, sweeps)) {
-    swept = sweeps.sweep(velocities, rates, begin, settled * scale, true, last_resort);
+    swept = sweeps.sweep(velocities, rates, begin, settled * scale, true, last_resort, halvings);
     mode.solves += swept.solves;
   }
   if (!(swept.changed <= accepted * scale)) {

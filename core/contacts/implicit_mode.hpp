@@ -15,10 +15,12 @@ inline namespace core {
 /// empty: from none). Velocities at the start keep no approach. Of first order in h.
 /// @param last_resort  where sweeps do not settle, what is rough is held along the surfaces by what
 ///                     does not press it, too, unless it parts
+/// @param halvings  the most sweeps are halved so many times
 ///
 /// A refusal where sweeps do not settle, or where bodies hang on joints.
 [[nodiscard]] TurningMode implicit_mode(const TurningState& state, double h,
-                                        std::span<const Vector3> warm, bool last_resort = false);
+                                        std::span<const Vector3> warm, bool last_resort = false,
+                                        int halvings = 0);
 
 }  // namespace core
 }  // namespace kairos

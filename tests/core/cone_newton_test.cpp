@@ -145,6 +145,29 @@ TEST_CASE("Newton's method on cones finds impulses that satisfy Coulomb's law, w
   CHECK(found >= trials - 40);
 }
 
+TEST_CASE("Newton's method finds the impulse that jams Painleve's rod, however fast it slides",
+          "[friction]") {
+  // A rod of 1 kg and 2 m that leans by this angle and slides towards where it leans: where
+  // friction presses the more the more it presses, the impulse that stops it is the only one.
+  for (const double angle : {50.0, 60.0, 70.0}) {
+    for (const double mu : {2.0, 3.0}) {
+      for (const double speed : {0.01, 1.0, 100.0, 1e4}) {
+        CAPTURE(angle, mu, speed);
+        const double c = std::cos(angle * M_PI / 180.0);
+        const double s = std::sin(angle * M_PI / 180.0);
+        ConeProblem rod{Eigen::Matrix3d::Identity(), Eigen::Vector3d(-0.01, speed, 0.0), {mu}};
+        rod.W.topLeftCorner<2, 2>() << 1.0 + 3.0 * c * c, 3.0 * s * c, 3.0 * s * c,
+            1.0 + 3.0 * s * s;
+        REQUIRE(rod.W(0, 0) - mu * rod.W(0, 1) < 0.0);  // Painleve's case
+        const ConeImpulses found = cone_newton(rod, Eigen::VectorXd::Zero(3), 1e-12 * speed);
+        CHECK(found.off <= 1e-12 * speed);
+        const Eigen::VectorXd stops = -rod.W.inverse() * rod.q;
+        CHECK((found.impulse - stops).norm() <= 1e-12 * stops.norm());
+      }
+    }
+  }
+}
+
 TEST_CASE("proximal points find the impulses of walls, whose touches are redundant", "[friction]") {
   Random random(20261127);
   int newton = 0;

@@ -237,13 +237,14 @@ class EventModes {
     bool once = false;
     double frame = 0.0;  ///< counted from the start of the run
     int steps = 0;
-    int in_vain = 0;  ///< searches for its forces in that frame that found none, in a row
+    int in_vain = 0;    ///< searches for its forces in that frame that found none, in a row
+    int unsettled = 0;  ///< of steps over what forces are not known of: the same
 
     void persist(Archive& archive);
   };
   [[nodiscard]] Turned& turned_in_frame(BodyIndex i, Instant t);
-  void count_search(const Gathered& found, const Turning& turning, Instant t);
-  [[nodiscard]] int in_vain(const Gathered& found, Instant t);
+  void count_in_vain(const Gathered& found, const Turning& turning, Instant t, int Turned::*what);
+  [[nodiscard]] int halvings(const Gathered& found, Instant t, int Turned::*what);
   std::vector<Turned> has_turned_;
 };
 

@@ -71,7 +71,9 @@ bool EventModes::step_over(const Gathered& found, Turning& turning, Instant t,
   double h = std::min({implicit_part * frame, run_.epoch_end() - t, before});
   bool halved = false;
   for (int round = 0; round < most_halvings; ++round, h *= 0.5, halved = true) {
-    turning.mode = implicit_mode(turning.group.start, h, warm, asked.last_resort);
+    turning.mode = implicit_mode(turning.group.start, h, warm, asked.last_resort,
+                                 asked.last_resort ? 0 : halvings(found, t, &Turned::unsettled));
+    count_in_vain(found, turning, t, &Turned::unsettled);
     turning.mode.keeps_all = turning.all;
     run_.cost.contact_solves += turning.mode.solves;
     if (!turning.mode.refusal.empty()) {

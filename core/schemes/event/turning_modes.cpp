@@ -188,8 +188,10 @@ void EventModes::find_forces(const Gathered& found, Turning& turning, Instant t)
   const double still = TurningForces(turning.group.start).load() * instant + roundoff;
   const auto find = [&] {
     turning.mode = turning_mode(turning.group.start, std::max(still, turning_rest(turning.group)),
-                                in_vain(found, t));
-    count_search(found, turning, t);
+                                halvings(found, t, &Turned::in_vain));
+    if (turning.mode.searched) {
+      count_in_vain(found, turning, t, &Turned::in_vain);
+    }
     return turning.mode.refusal.empty();
   };
   if (find()) {
@@ -338,7 +340,7 @@ bool EventModes::let_hop(Turning& turning, double roundoff) {
 
 /// Where friction jams what slides, an impulse stops it, and it goes on from there.
 void EventModes::let_jam(const Gathered& found, Turning& turning, Instant t, double still) {
-  auto stopped = jam(turning.group.start, still, in_vain(found, t));
+  auto stopped = jam(turning.group.start, still, halvings(found, t, &Turned::in_vain));
   if (!stopped) {
     return;
   }

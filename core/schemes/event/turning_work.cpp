@@ -57,27 +57,30 @@ void EventModes::count_step(const Gathered& found, Instant t) {
 }
 
 /// Where nothing is found, again and again, each search takes half as long as the one before.
-void EventModes::count_search(const Gathered& found, const Turning& turning, Instant t) {
+void EventModes::count_in_vain(const Gathered& found, const Turning& turning, Instant t,
+                               int Turned::*what) {
   for (const BodyIndex i : found.bodies) {
-    if (run_.model.is_free(i) && turning.mode.searched) {
-      Turned& turned = turned_in_frame(i, t);
-      turned.in_vain = turning.mode.refusal.empty() ? 0 : turned.in_vain + 1;
+    if (run_.model.is_free(i)) {
+      int& in_vain = turned_in_frame(i, t).*what;
+      in_vain = turning.mode.refusal.empty() ? 0 : in_vain + 1;
     }
   }
 }
 
 /// How many times the longest search for forces of a group is halved.
-int EventModes::in_vain(const Gathered& found, Instant t) {
+int EventModes::halvings(const Gathered& found, Instant t, int Turned::*what) {
   int most = 0;
   for (const BodyIndex i : found.bodies) {
     if (run_.model.is_free(i)) {
-      most = std::max(most, turned_in_frame(i, t).in_vain);
+      most = std::max(most, turned_in_frame(i, t).*what);
     }
   }
   return std::min(most, TurningLimits::most_halvings);
 }
 
-void EventModes::Turned::persist(Archive& archive) { archive(once, frame, steps, in_vain); }
+void EventModes::Turned::persist(Archive& archive) {
+  archive(once, frame, steps, in_vain, unsettled);
+}
 void EventModes::persist(Archive& archive) {
   archive(has_turned_);
   archive.require(has_turned_.size() == run_.model.size());
