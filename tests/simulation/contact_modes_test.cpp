@@ -163,7 +163,7 @@ TEST_CASE("a pyramid stands: who carries what is not told by one patch alone", "
 }
 
 TEST_CASE("overhang of four boxes: stands at 0.999 of 25/24 of a length, tips at 1.001",
-          "[modes][reference]") {
+          "[modes][reference][slow]") {
   // Lengths of 0.2; the k-th from the top is over the one below by 1/(2k) of a length, the lowest
   // over the edge of a table.
   for (const double share : {0.999, 1.001}) {

@@ -626,7 +626,7 @@ TEST_CASE("friction: what is redundant and presses nothing rubs nothing", "[fric
 }
 
 TEST_CASE("friction: a box comes down on one that lies on a floor which returns all of its speed",
-          "[friction]") {
+          "[friction][slow]") {
   // The lower one rattles on its corners, and the floor takes no energy from its hops but by
   // friction.
   for (const double tilt : {1e-6, 1e-3}) {

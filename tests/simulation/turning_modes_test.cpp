@@ -255,7 +255,7 @@ std::pair<double, Tipping> tips(double w, double h, double v) {
 }  // namespace
 
 TEST_CASE("turning: a box that slides over the edge of a table tips as its middle passes it",
-          "[turning]") {
+          "[turning][slow]") {
   const auto [time, state] = tips(0.2, 0.1, 1.0);
   for (const double frame : {0.2, 1.0 / 60.0, 0.005}) {
     const std::string text =
@@ -634,7 +634,7 @@ TEST_CASE("turning: a tilted box with large friction lands, jams, and comes to r
 // Two boxes tumble onto a floor with a friction of 2. Whether one comes to Painleve's case depends
 // on the last digit of where it was: half of these six are enough.
 TEST_CASE("turning: an impulse in Painleve's case is told as such, and gives nothing",
-          "[turning]") {
+          "[turning][slow]") {
   const auto cube = [](const std::string& name, const Vector3& p, const std::string& axis_angle,
                        double speed) {
     return fmt::format(
