@@ -45,7 +45,7 @@ class ContactSweeps {
   ///               `axes` tells, m/s; empty: nothing
   /// @param begin  impulses to begin with, by touch, N s; empty: none
   /// @param last_resort  of a step: where nothing settles, rough touches hold along their surfaces
-  /// @param halvings  very many are halved so many times
+  /// @param halvings  the most sweeps are halved so many times
   [[nodiscard]] Swept sweep(std::vector<Vector6> velocities, std::span<const Vector3> rates,
                             std::span<const Vector3> begin, double settled, bool rubs,
                             bool last_resort = false, int halvings = 0) const;

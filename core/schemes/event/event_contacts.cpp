@@ -171,6 +171,7 @@ bool EventContacts::settle_at_last(std::span<const BodyIndex> seeds, Instant t) 
   return go_on_if(settle(seeds, t, {.may_turn = true, .last_resort = true}), seeds);
 }
 
+/// What settled has not stalled; returns whether it did.
 bool EventContacts::go_on_if(bool settled, std::span<const BodyIndex> seeds) {
   for (std::size_t k = 0; k < seeds.size() && settled; ++k) {
     accumulation_.go_on(seeds[k]);
