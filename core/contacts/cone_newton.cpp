@@ -1,6 +1,6 @@
 #include "core/contacts/cone_newton.hpp"
 
-#include "core/contacts/cone_admm.hpp"
+#include "core/contacts/cone_interior.hpp"
 #include "core/contacts/least_norm.hpp"
 
 #include <algorithm>
@@ -34,25 +34,6 @@ constexpr double nearly_rough = 100.0;
 /// with.
 enum class Start { given, nothing, all_stick };
 
-/// Newton's step. What opens has rows with nothing but an element of its own: it is known, and the
-/// others' system is smaller without it.
-VectorXd newton_step(const Eigen::MatrixXd& J, const VectorXd& off) {
-  VectorXd step = VectorXd::Zero(off.size());
-  std::vector<Eigen::Index> left;
-  for (Eigen::Index i = 0; i < off.size(); ++i) {
-    if ((J.row(i).array() != 0.0).count() == 1 && J(i, i) != 0.0) {
-      step[i] = off[i] / J(i, i);
-    } else {
-      left.push_back(i);
-    }
-  }
-  if (!left.empty()) {
-    const VectorXd rest = off - J * step;
-    step(left) = least_norm(J(left, left), rest(left));
-  }
-  return step;
-}
-
 /// The impulses that came nearest from these starts, one after the other.
 ConeImpulses newton_from(std::initializer_list<Start> starts, const ConeProblem& problem,
                          const VectorXd& begin, double settled) {
@@ -65,7 +46,7 @@ ConeImpulses newton_from(std::initializer_list<Start> starts, const ConeProblem&
     }
     for (int steps = 0, idle = 0; idle < most_idle && steps < most_steps && nearest.off > settled;
          ++steps, ++idle) {
-      p -= newton_step(projections.change(p), projections.off(p));
+      p -= projections.newton_step(p);
       const double off = projections.off(p).lpNorm<Eigen::Infinity>();
       if (!std::isfinite(off)) {
         break;
@@ -124,8 +105,8 @@ ConeImpulses cone_at_once(const ConeProblem& problem, const VectorXd& begin, dou
   if (way == AtOnce::newton && problem.friction.size() <= most_for_newton) {
     return cone_newton(problem, begin, settled);
   }
-  if (way == AtOnce::admm) {
-    return cone_admm(problem, begin, settled);
+  if (way == AtOnce::interior) {
+    return cone_interior(problem, begin, settled);
   }
   const bool few = problem.friction.size() <= most_for_proximal;
   if (way == AtOnce::proximal && few) {
@@ -141,7 +122,7 @@ ConeImpulses cone_at_once(const ConeProblem& problem, const VectorXd& begin, dou
     held.holds_along = true;
     const ConeImpulses found =
         few ? cone_newton(held, begin, settled) : ConeImpulses{begin, infinity};
-    return found.off <= settled ? found : cone_admm(held, found.impulse, settled);
+    return found.off <= settled ? found : cone_interior(held, found.impulse, settled);
   }
   return {begin, ConeProjections(problem).off(begin).lpNorm<Eigen::Infinity>()};
 }

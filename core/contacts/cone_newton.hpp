@@ -35,7 +35,7 @@ constexpr std::size_t most_at_once = 160;
 /// Ways to look for impulses at all touches at once.
 enum class AtOnce {
   newton,      ///< Newton's method, where touches are few
-  admm,        ///< `cone_admm`
+  interior,    ///< `cone_interior`
   proximal,    ///< the proximal points
   bounded,     ///< these with friction of 100 where touches are rough, as what is hardly pressed
                ///< and has no bound may be held by nothing at all

@@ -1,5 +1,7 @@
 #include "core/contacts/cone_problem.hpp"
 
+#include "core/contacts/least_norm.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -92,6 +94,27 @@ MatrixXd ConeProjections::change(const VectorXd& p) const {
   return J;
 }
 
+VectorXd ConeProjections::newton_step(const VectorXd& p) const {
+  const MatrixXd J = change(p);
+  const VectorXd F = off(p);
+  VectorXd step = VectorXd::Zero(F.size());
+  // What opens has rows with nothing but an element of its own: it is known, and the others' system
+  // is smaller without it.
+  std::vector<Eigen::Index> left;
+  for (Eigen::Index i = 0; i < F.size(); ++i) {
+    if ((J.row(i).array() != 0.0).count() == 1 && J(i, i) != 0.0) {
+      step[i] = F[i] / J(i, i);
+    } else {
+      left.push_back(i);
+    }
+  }
+  if (!left.empty()) {
+    const VectorXd rest = F - J * step;
+    step(left) = least_norm(J(left, left), rest(left));
+  }
+  return step;
+}
+
 void ConeProjections::make_exact(ConeImpulses& nearest) const {
   VectorXd& p = nearest.impulse;
   const VectorXd u = of_.W * p + of_.q;
@@ -113,6 +136,21 @@ void ConeProjections::make_exact(ConeImpulses& nearest) const {
     }
   }
   nearest.off = off(p).lpNorm<Eigen::Infinity>();
+}
+
+bool ConeProjections::let_part(const VectorXd& p, std::vector<double>& friction) const {
+  const VectorXd u = of_.W * p + of_.q;
+  bool any = false;
+  for (std::size_t k = 0; k < felt_.size(); ++k) {
+    const Vector3d pk = p.segment<3>(place(k));
+    const Vector3d uk = u.segment<3>(place(k));
+    if (std::isinf(friction[k]) && !pk.tail<2>().isZero(0.0) &&
+        state(k, pk, uk, felt_[k] * pk - uk) == Does::opens) {
+      friction[k] = 0.0;
+      any = true;
+    }
+  }
+  return any;
 }
 
 ConeProjections::Does ConeProjections::state(std::size_t k, const Vector3d& p, const Vector3d& u,

@@ -33,9 +33,18 @@ class ConeProjections {
   [[nodiscard]] Eigen::VectorXd off(const Eigen::VectorXd& p) const;
   /// The derivative of `off`.
   [[nodiscard]] Eigen::MatrixXd change(const Eigen::VectorXd& p) const;
+  /// Newton's step from these impulses, to be taken off them; of those that are as good the
+  /// shortest, as touches may be redundant.
+  [[nodiscard]] Eigen::VectorXd newton_step(const Eigen::VectorXd& p) const;
   /// Into the cones, which the nearest may miss by what it is off: what opens takes no impulse at
   /// all, and what has no friction none across.
   void make_exact(ConeImpulses& nearest) const;
+
+  /// Friction without a bound holds along the surfaces what nothing presses. What would part
+  /// without that has none from here on; whether some does.
+  /// @param p         impulses, N s, with which what is rough is held along
+  /// @param friction  by touch, what is left of the problem's
+  [[nodiscard]] bool let_part(const Eigen::VectorXd& p, std::vector<double>& friction) const;
 
  private:
   enum class Does { opens, holds_along, sticks, slides };

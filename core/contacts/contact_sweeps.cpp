@@ -30,10 +30,10 @@ constexpr int idle_sweeps = 64;
 constexpr int at_once_after = 64;
 constexpr int later_in_impacts = 3;
 constexpr int later_in_steps = 4;
-constexpr std::array ways_of_impacts = {AtOnce::newton, AtOnce::admm, AtOnce::proximal,
+constexpr std::array ways_of_impacts = {AtOnce::newton, AtOnce::interior, AtOnce::proximal,
                                         AtOnce::bounded};
-constexpr std::array ways_of_steps = {AtOnce::newton, AtOnce::admm, AtOnce::newton};
-constexpr std::array last_ways_of_steps = {AtOnce::newton, AtOnce::admm, AtOnce::held_along};
+constexpr std::array ways_of_steps = {AtOnce::newton, AtOnce::interior, AtOnce::newton};
+constexpr std::array last_ways_of_steps = {AtOnce::newton, AtOnce::interior, AtOnce::held_along};
 
 /// When sweeps of a step over many touches are helped by linear systems (`solve_as_found`). What
 /// these give is swept on, and taken back if it has not come nearer in the end. What settles is
@@ -195,11 +195,13 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
       at_once *= in_step ? later_in_steps : later_in_impacts;
       const AtOnce way = ways.front();
       ways = ways.subspan(1);
+      // What is left of redundant touches in a step is how they contradict each other; and sweeps
+      // would let go again what was held.
+      const bool redundant = in_step && way == AtOnce::interior;
+      const double enough = (redundant ? most_contradiction : 1.0) * settled;
       const double off =
-          settle_at_once(velocities, rates, settled, rubs, way, along, swept.velocities);
-      // Sweeps would let go again what was held; and what is left of many redundant touches is how
-      // they contradict each other.
-      const bool nearly = way == AtOnce::held_along || (in_step && way == AtOnce::admm);
+          settle_at_once(velocities, rates, enough, rubs, way, along, swept.velocities);
+      const bool nearly = redundant || way == AtOnce::held_along;
       if (off <= (nearly ? nearly_settled : 1.0) * settled) {
         swept.changed = off;
         break;

@@ -114,7 +114,7 @@ class Jams {
     Jam found{before_, std::vector<char>(n, 0)};
     std::vector<Vector3> impulse(n, Vector3::Zero());
     int at_once = n <= most_at_once ? at_once_after : most_sweeps_;
-    AtOnce way = n <= most_for_newton ? AtOnce::newton : AtOnce::admm;
+    AtOnce way = n <= most_for_newton ? AtOnce::newton : AtOnce::interior;
     for (int round = 0; round < most_sweeps_; ++round) {
       double changed = 0.0;
       for (std::size_t k = 0; k < n; ++k) {
@@ -132,7 +132,7 @@ class Jams {
       if (!ends && round == at_once) {
         at_once *= 4;
         ends = settle_at_once(more, way, impulse, found.velocities);
-        way = way == AtOnce::newton ? AtOnce::admm : AtOnce::newton;
+        way = way == AtOnce::newton ? AtOnce::interior : AtOnce::newton;
       }
       if (!ends) {
         continue;
