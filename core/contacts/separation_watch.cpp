@@ -57,6 +57,10 @@ struct Bounds {
   double spin = 0.0;          ///< rad/s^2
 };
 
+/// Where all planes are nearer than this part of the gaps that are held, another one is looked for:
+/// a corner that nothing holds, beyond the rim, may go below the plane of a face.
+constexpr double scant = 1e-2;
+
 /// One plane, and the corners that are to stay beyond it.
 struct Candidate {
   std::vector<std::size_t> corners_a;  ///< of the pair's, those that are to be on one side
@@ -102,7 +106,8 @@ class Watcher {
 
   double strike_time() {
     std::vector<double> start = heights(0.0);
-    if (std::none_of(start.begin(), start.end(), [](double height) { return height > 0.0; })) {
+    const auto is_apart = [&](double height) { return height > scant * watch_.pair.nearest; };
+    if (std::none_of(start.begin(), start.end(), is_apart)) {
       add_spare();
       start = heights(0.0);
     }
