@@ -178,7 +178,8 @@ class Interior {
     const double most = std::min(1.0, 1.0 / towards_edges(straight));
     const double then =
         (x_ + most * straight.x).dot(u_ + most * straight.u) / static_cast<double>(cones_.size());
-    const double centring = std::clamp(std::pow(then / now, 3.0), least_centring, 1.0);
+    const double goes_to = then / now;
+    const double centring = std::clamp(goes_to * goes_to * goes_to, least_centring, 1.0);
     const double second = std::min(1.0, full_second_order * most);
     VectorXd pulls = VectorXd::Zero(x_.size());
     for (const Cone& cone : cones_) {

@@ -13,8 +13,8 @@ inline namespace core {
 /// derivatives that the motions' polynomials bound, so that heights at two times bound those
 /// between from below: sag <= bound (s1 - s0)^2 / 8. Planes through touches of two edges, or of
 /// balls, go with both bodies; their heights are bounded likewise, by what the motions' bounds
-/// give. Where none of these separates the two at the start, or by next to nothing, and their shapes
-/// are known, the plane of another face or across other edges is watched.
+/// give. Where none of these separates the two at the start, or by next to nothing, and their
+/// shapes are known, the plane of another face or across other edges is watched.
 struct SeparationWatch {
   const TurningPair& pair;
   Motion motion_a;

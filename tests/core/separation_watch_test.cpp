@@ -263,6 +263,38 @@ TEST_CASE("separation watch: where the plane that touches tells nothing, another
   CHECK(some > 3000);
 }
 
+TEST_CASE(
+    "separation watch: a corner beyond the rim that comes to the plane of the face is no strike",
+    "[turning]") {
+  // A box hangs over the rim of a face by d, tilted so that its corner there is `above` the plane,
+  // and goes below; over the rim it stays d times the tilt away.
+  const double overhang = 0.05;
+  const Box a{Vector3(0.2, 0.1, 0.3)};
+  const Box b{Vector3(0.25, 0.15, 0.2)};
+  const Shape shape_a = a;
+  const Shape shape_b = b;
+  for (const double above : {-1e-12, 0.0, 1e-16, 1e-14}) {
+    for (const double tilt : {2e-8, 1e-6, 1e-4}) {
+      CAPTURE(above, tilt);
+      TurningPair pair{
+          0, 1, *corners_of(shape_a), *corners_of(shape_b), {}, {}, nearest, &shape_a, &shape_b};
+      pair.planes_a = {{TouchFeature::Kind::plane, a.half_extents, Vector3::UnitY(), 0.0}};
+      Pose at_b;
+      at_b.orientation = Quaternion(1.0, 0.0, 0.0, -0.5 * tilt).normalized();
+      const Vector3 corner(b.half_extents.x(), -b.half_extents.y(), 0.0);
+      at_b.position = Vector3(a.half_extents.x() + overhang, a.half_extents.y() + above, 0.0) -
+                      at_b.orientation * corner;
+      Motion falls = Motion::at_rest({}, at_b);
+      falls.duration = duration;
+      falls.position.resize(1);
+      falls.position[1] = Vector3(0.0, -1e-9, 0.0);  // 1e-12 m in all
+      const SeparationWatch watch{pair, Motion::at_rest({}, Pose{}), falls, {}, {}};
+      CHECK(watch.strike_time(duration) == duration);
+      CHECK(gap_of_boxes(a.half_extents, Pose{}, b.half_extents, falls.pose(duration)) > 0.0L);
+    }
+  }
+}
+
 TEST_CASE("separation watch: of two balls that nothing holds none comes nearer than it may",
           "[turning]") {
   const std::uint64_t seed = 20261124;
