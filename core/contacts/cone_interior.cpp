@@ -46,7 +46,6 @@ constexpr double compliance = 1e-12;
 /// Where the impulses of a touch are among all unknowns: one along its normal alone, or three of a
 /// cone of second order: along the normal, times its friction, and along two tangents.
 struct Cone {
-  std::size_t touch = 0;
   Index at = 0;
   Index size = 1;
   Matrix3d scale = Matrix3d::Identity();    ///< of Nesterov and Todd: scale x = unscale u
@@ -109,7 +108,7 @@ class Interior {
       const double unit = felt > 0.0 ? 1.0 / std::sqrt(felt) : 1.0;
       const double mu = friction[touch];
       const bool bounded = mu > 0.0 && !std::isinf(mu);
-      cones_.push_back({touch, static_cast<Index>(row_.size()), bounded ? 3 : 1});
+      cones_.push_back({static_cast<Index>(row_.size()), bounded ? 3 : 1});
       add(row, bounded ? unit / mu : unit);
       for (Index axis = 1; axis < 3 && mu > 0.0; ++axis) {
         if (!bounded) {
@@ -122,7 +121,7 @@ class Interior {
     const Eigen::Map<const VectorXd> unit(unit_.data(), size);
     H_ = unit.asDiagonal() * problem.W(row_, row_) * unit.asDiagonal();
     g_ = unit.cwiseProduct(problem.q(row_));
-    impulse_ = VectorXd::Zero(problem.q.size());
+    rows_ = problem.q.size();
     x_ = u_ = VectorXd::Zero(size);
     for (const Cone& cone : cones_) {
       x_[cone.at] = u_[cone.at] = std::max(g_.lpNorm<Eigen::Infinity>(), least_rate);
@@ -133,11 +132,12 @@ class Interior {
   [[nodiscard]] double left() const { return x_.dot(u_) / static_cast<double>(cones_.size()); }
 
   /// N s
-  [[nodiscard]] const VectorXd& impulse() {
+  [[nodiscard]] VectorXd impulse() const {
+    VectorXd p = VectorXd::Zero(rows_);
     for (std::size_t i = 0; i < row_.size(); ++i) {
-      impulse_[row_[i]] = unit_[i] * x_[static_cast<Index>(i)];
+      p[row_[i]] = unit_[i] * x_[static_cast<Index>(i)];
     }
-    return impulse_;
+    return p;
   }
 
   /// Goes a step; false: it gets no further.
@@ -191,12 +191,12 @@ class Interior {
     }
     const Way bent = way(pulls);
     const double step = std::min(1.0, most_of_way / towards_edges(bent));
-    if (!(step >= least_step)) {
+    if (!(step >= least_step && bent.x.allFinite() && bent.u.allFinite())) {
       return false;
     }
     x_ += step * bent.x;
     u_ += step * bent.u;
-    return x_.allFinite() && u_.allFinite();
+    return true;
   }
 
  private:
@@ -248,7 +248,7 @@ class Interior {
   VectorXd g_;
   VectorXd x_;
   VectorXd u_;
-  VectorXd impulse_;
+  Index rows_ = 0;  ///< of the problem
 };
 
 /// To roundoff from impulses that are near.
