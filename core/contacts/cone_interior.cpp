@@ -41,7 +41,7 @@ constexpr double least_step = 1e-3;
 constexpr double smoothing = 1e-4;
 /// Given to impulses along rough surfaces, which may be redundant, as a part of what a touch by
 /// itself feels.
-constexpr double compliance = 1e-12;
+constexpr double compliance_along = 1e-12;
 
 /// Where the impulses of a touch are among all unknowns: one along its normal alone, or three of a
 /// cone of second order: along the normal, times its friction, and along two tangents.
@@ -163,7 +163,7 @@ class Interior {
           (cone.scale * cone.scale).topLeftCorner(cone.size, cone.size);
     }
     for (const Index i : free_) {
-      scaled(i, i) += compliance;
+      scaled(i, i) += compliance_along;
     }
     const Eigen::ColPivHouseholderQR<MatrixXd> decomposition(scaled);
     const auto way = [&](const VectorXd& pulls) {
@@ -265,19 +265,17 @@ ConeImpulses polished(const ConeProblem& problem, const ConeProjections& project
     }
     return nearer;
   };
-  ConeProblem with = problem;
-  const double more = proximal * problem.W.diagonal().mean();
-  with.W.diagonal().array() += more;
-  const ConeProjections held(with);
+  const double compliance = proximal * problem.W.diagonal().mean();
   for (int round = 0; round < most_rounds && nearest.off > settled; ++round) {
     take(nearest.impulse - projections.newton_step(nearest.impulse));
     if (nearest.off <= settled) {
       break;
     }
-    with.q = problem.q - more * nearest.impulse;
+    const ConeProblem held = held_near(problem, nearest.impulse, compliance);
+    const ConeProjections projections_of_held(held);
     VectorXd at = nearest.impulse;
     for (int step = 0; step < most_newton_steps; ++step) {
-      at -= held.newton_step(at);
+      at -= projections_of_held.newton_step(at);
     }
     if (!take(at)) {
       break;

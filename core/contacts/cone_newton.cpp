@@ -77,10 +77,8 @@ ConeImpulses cone_proximal(const ConeProblem& problem, const VectorXd& begin, do
   double compliance = first_compliance * scale;
   for (int round = 0, unsolved = 0;
        round < most_rounds && unsolved < most_unsolved && nearest.off > settled; ++round) {
-    ConeProblem with = problem;
-    with.W.diagonal().array() += compliance;
-    with.q -= compliance * p;
-    const ConeImpulses found = newton_from({Start::given, Start::nothing}, with, p, 0.1 * settled);
+    const ConeImpulses found = newton_from({Start::given, Start::nothing},
+                                           held_near(problem, p, compliance), p, 0.1 * settled);
     if (!(found.off <= solved * here)) {
       compliance *= 4.0;
       ++unsolved;

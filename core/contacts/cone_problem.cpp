@@ -19,6 +19,13 @@ Eigen::Index place(std::size_t k) { return 3 * static_cast<Eigen::Index>(k); }
 
 }  // namespace
 
+ConeProblem held_near(const ConeProblem& problem, const VectorXd& p, double compliance) {
+  ConeProblem held = problem;
+  held.W.diagonal().array() += compliance;
+  held.q -= compliance * p;
+  return held;
+}
+
 ConeProjections::ConeProjections(const ConeProblem& problem) : of_(problem) {
   for (std::size_t k = 0; k < of_.friction.size(); ++k) {
     const Eigen::Index at = place(k);

@@ -17,6 +17,11 @@ struct ConeProblem {
   bool holds_along = false;      ///< what is rough has u_t = 0 and any p_t, pressed or not
 };
 
+/// The problem with this compliance at each touch, 1/kg, against the impulses p: what a step of the
+/// proximal point algorithm solves [Rockafellar1976].
+[[nodiscard]] ConeProblem held_near(const ConeProblem& problem, const Eigen::VectorXd& p,
+                                    double compliance);
+
 /// Impulses, and what they are off.
 struct ConeImpulses {
   Eigen::VectorXd impulse;  ///< N s, 3 by touch

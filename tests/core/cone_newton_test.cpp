@@ -212,8 +212,7 @@ TEST_CASE("an interior-point method finds the impulses of walls that Newton's me
 }
 
 TEST_CASE("among redundant touches an interior-point method shares alike", "[friction]") {
-  // A cube that falls flat on its face, and slides: what mirrors it changes nothing. Touch by
-  // touch, the order would choose.
+  // A cube that falls flat on its face, and slides: what mirrors it changes nothing.
   Random random(1);
   for (int trial = 0; trial < 20; ++trial) {
     ConeProblem problem = wall(1, 1, random);
@@ -229,7 +228,7 @@ TEST_CASE("among redundant touches an interior-point method shares alike", "[fri
     CAPTURE(trial, mu, slip, found.impulse, found.off);
     REQUIRE(found.off <= 1e-12);
     // Across the slip two touches push one way as two push the other, hardly: the middle is where
-    // they do not at all. The order of a sweep would choose.
+    // they do not at all.
     double across = 0.0;
     for (Eigen::Index at = 0; at < 12; at += 3) {
       across += found.impulse[at + 2];
