@@ -62,7 +62,7 @@ KAIROS_INLINE double clear_of(const double (&d)[3], const double (&v)[3], double
   const bool meets = (approach < 0.0) & (outside > 0.0) & (inwards >= 0.0) & (time <= resolved);
   const bool known = coordinates <= largest * touch;
   double clear = meets ? sooner * time : 0.0;
-  clear = parts | passes ? infinity : clear;
+  clear = (parts | passes) ? infinity : clear;
   return known ? clear : 0.0;
 }
 

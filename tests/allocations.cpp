@@ -1,5 +1,7 @@
 #include "tests/allocations.hpp"
 
+#include "tests/sanitizers.hpp"
+
 #include <atomic>
 #include <cstdlib>
 #include <new>
@@ -10,7 +12,7 @@ std::atomic<std::size_t> count{0};
 
 }  // namespace
 
-#ifndef __SANITIZE_ADDRESS__  // the sanitizer has its own, and pairs them; it counts nothing here
+#ifndef KAIROS_SANITIZED_MEMORY  // which the sanitizer pairs; nothing is counted here
 
 // The whole program's: a test that counts before and after a loop proves that it does not allocate.
 void* operator new(std::size_t size) {

@@ -24,7 +24,7 @@ double end_position(O o) {
   return o.subject.pose.position[axis];
 }
 
-std::vector<Metric> overlap_metrics() {
+std::vector<Metric> constraint_metrics() {
   return {
       {{"max_penetration", "m", "deepest overlap of two solids in a drawn frame"},
        [](O o) { return o.frames->in_frames.depth; },
@@ -44,6 +44,10 @@ std::vector<Metric> overlap_metrics() {
       {{"crossings", "", "how often a centre passed through a solid"},
        [](O o) { return static_cast<double>(o.crossing->crossings()); },
        Needs::crossing},
+      {{"joint_drift", "",
+        "largest residual of a joint in a drawn frame, relative to the mechanism's size"},
+       [](O o) { return o.joints->max_drift(); },
+       Needs::joints},
   };
 }
 
@@ -142,8 +146,8 @@ std::vector<Metric> cost_metrics() {
 const std::vector<Metric>& metric_table() {
   static const std::vector<Metric> all = [] {
     std::vector<Metric> table;
-    for (const auto& part :
-         {overlap_metrics(), energy_metrics(), impact_metrics(), end_metrics(), cost_metrics()}) {
+    for (const auto& part : {constraint_metrics(), energy_metrics(), impact_metrics(),
+                             end_metrics(), cost_metrics()}) {
       table.insert(table.end(), part.begin(), part.end());
     }
     return table;

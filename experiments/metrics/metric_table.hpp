@@ -5,6 +5,7 @@
 #include "experiments/metrics/metric_between.hpp"
 #include "experiments/metrics/metric_crossing.hpp"
 #include "experiments/metrics/metric_impacts.hpp"
+#include "experiments/metrics/metric_joints.hpp"
 #include "experiments/metrics/metrics.hpp"
 #include "simulation/run_metrics.hpp"
 
@@ -18,6 +19,7 @@ struct Observation {
   const RunMetrics* frames;
   const BetweenWatch* between;
   const CrossingWatch* crossing;
+  const JointWatch* joints;
   const ApexWatch& apex;
   const ImpactWatch& impacts;
   const BodyState& subject;
@@ -25,7 +27,7 @@ struct Observation {
 };
 
 /// What must be watched for a metric.
-enum class Needs { nothing, frames, between, crossing, apex, exact };
+enum class Needs { nothing, frames, between, crossing, joints, apex, exact };
 
 struct Metric {
   MetricInfo info;

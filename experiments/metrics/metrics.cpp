@@ -16,6 +16,7 @@ struct MetricRecorder::Watches {
   std::optional<MetricsRecorder> frames;
   std::optional<BetweenWatch> between;
   std::optional<CrossingWatch> crossing;
+  std::optional<JointWatch> joints;
   ApexWatch apex;
   ImpactWatch impacts;
   std::unique_ptr<const ExactMotion> exact;
@@ -97,7 +98,7 @@ bool MetricRecorder::wants_motions() const {
 void MetricRecorder::begin(const Model& model) {
   const BodyIndex subject = subject_of(model, request_.subject);
   watches_.reset(
-      new Watches{subject, {}, {}, {}, ApexWatch(subject), ImpactWatch(model, subject), {}});
+      new Watches{subject, {}, {}, {}, {}, ApexWatch(subject), ImpactWatch(model, subject), {}});
   if (needed(request_, Needs::frames)) {
     watches_->frames.emplace().begin(model);
   }
@@ -106,6 +107,9 @@ void MetricRecorder::begin(const Model& model) {
   }
   if (needed(request_, Needs::crossing)) {
     watches_->crossing.emplace(model);
+  }
+  if (needed(request_, Needs::joints)) {
+    watches_->joints.emplace(model);
   }
   if (needed(request_, Needs::exact)) {
     watches_->exact = solve_exactly(model.scene());
@@ -121,6 +125,9 @@ void MetricRecorder::frame(const Frame& frame) {
   }
   if (watches_->crossing) {
     watches_->crossing->frame(frame);
+  }
+  if (watches_->joints) {
+    watches_->joints->frame(frame);
   }
 }
 
@@ -149,8 +156,8 @@ std::optional<double> MetricRecorder::value(std::string_view metric,
   const auto exact = w.exact ? w.exact->state(w.subject, result.end) : std::nullopt;
   const double x = find_metric(metric)->value(
       {result, w.frames ? &w.frames->metrics() : nullptr, w.between ? &*w.between : nullptr,
-       w.crossing ? &*w.crossing : nullptr, w.apex, w.impacts, result.state[w.subject],
-       exact ? &*exact : nullptr});
+       w.crossing ? &*w.crossing : nullptr, w.joints ? &*w.joints : nullptr, w.apex, w.impacts,
+       result.state[w.subject], exact ? &*exact : nullptr});
   return std::isfinite(x) ? std::optional(x) : std::nullopt;
 }
 

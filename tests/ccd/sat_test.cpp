@@ -89,7 +89,6 @@ TEST_CASE("the greatest separation is the greatest of the fifteen", "[ccd][sat]"
 /// Of the fifteen axes, in long double, in the frame of a: there the product of two edges that are
 /// nearly parallel is at a right angle to that of a.
 double exact_gap(const Vector3& half_a, const Pose& at_a, const Vector3& half_b, const Pose& at_b) {
-  using Real = long double;
   using Vector = Eigen::Matrix<Real, 3, 1>;
   const auto to_a = at_a.orientation.cast<Real>().normalized().conjugate();
   const Eigen::Matrix<Real, 3, 3> b =

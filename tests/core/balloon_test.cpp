@@ -18,7 +18,7 @@ TEST_CASE("balloon: a ball whose gravity is scaled and reversed", "[entity]") {
   Body self;
   self.mass = 1.0;
   BodyState state;
-  balloon->give_momentum(self, state, {PhysicsType::ball, {1.0, {3, 2, 1}}, std::nullopt, 0.0});
+  balloon->give_momentum(self, state, {PhysicsType::ball, {1.0, {3, 2, 1}}, std::nullopt, {}});
   CHECK(state.twist.linear == Vector3(3, 2, 1));
   Vector3 force = Vector3::Zero();
   balloon->give_force(force, {0, 1, 0});

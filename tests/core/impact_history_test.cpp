@@ -58,7 +58,7 @@ TEST_CASE("impacts: those that creep add up, whatever short ways come between th
 TEST_CASE("impacts: those on short ways hang together, with their partners", "[impacts]") {
   ImpactHistory history;
   Instant t;
-  for (const BodyIndex partner : {4, 7, 4, 7}) {
+  for (const BodyIndex partner : {4U, 7U, 4U, 7U}) {
     history.add(with(partner, 1.0), t);
     t = t + 1e-4;  // 1e-4 m
   }

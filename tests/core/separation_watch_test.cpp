@@ -241,7 +241,7 @@ TEST_CASE("separation watch: boxes whose edges cross are apart as long as that i
 }
 
 TEST_CASE("separation watch: where the plane that touches tells nothing, another is found",
-          "[turning]") {
+          "[turning][slow]") {
   const std::uint64_t seed = 20261126;
   INFO("seed " << seed);
   Random random(seed);

@@ -2,16 +2,19 @@
 
 #include "core/pose.hpp"
 
-#include <quadmath.h>
-
 #include <cmath>
 
 /// Arithmetic of the judge: `Long` (64 bits of mantissa) to look, `Quad` (113 bits) to be sure.
 namespace kairos::judge {
 
 using Long = long double;
-// Not in ISO C++; GCC has it with its library libquadmath.
+// Not in ISO C++; GCC has it with its library libquadmath, whose header Clang does not find.
 __extension__ using Quad = __float128;
+extern "C" {
+Quad sqrtq(Quad) noexcept;
+Quad sinq(Quad) noexcept;
+Quad cosq(Quad) noexcept;
+}
 
 inline Long root(Long x) { return std::sqrt(x); }
 inline Quad root(Quad x) { return sqrtq(x); }

@@ -657,7 +657,7 @@ TEST_CASE("friction: a box comes down on another where all speed is returned, an
 
 // Balls in corners roll on two walls at once, where forces are redundant: some are at the edge of
 // their cones, and yet nothing begins to slide.
-TEST_CASE("friction: ten balls in a bin go on to the end", "[friction]") {
+TEST_CASE("friction: ten balls in a bin go on to the end", "[friction][slow]") {
   for (const int seed : {1, 2, 3, 4}) {
     const Simulation sim = simulate(
         parse_scene(

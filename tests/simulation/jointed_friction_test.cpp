@@ -254,8 +254,8 @@ TEST_CASE("jointed friction: a bar on a hinge falls and pushes a block by a rod"
   check_whole(sim, text);
   const long double inertia =
       m_bar * ((a * a + 0.02L * 0.02L) / 3.0L + static_cast<long double>(a) * a);
-  using State = std::array<long double, 4>;  // angle, its rate, place of the block, its velocity
-  const State end = integrate<4>({0.0L, 0.0L, x0, 0.0L}, duration, [&](const State& x) -> State {
+  using Known = std::array<long double, 4>;  // angle, its rate, place of the block, its velocity
+  const Known end = integrate<4>({0.0L, 0.0L, x0, 0.0L}, duration, [&](const Known& x) -> Known {
     const long double s = std::sin(x[0]);
     const long double c = std::cos(x[0]);
     const long double w = x[1];

@@ -127,7 +127,7 @@ TEST_CASE("ledger: a box that is sent to and fro by walls gives up its energy an
 }
 
 TEST_CASE("ledger: no frame of a crowd undoes an impact that was booked, and events are in order",
-          "[ledger]") {
+          "[ledger][slow]") {
   const Model model(parse_scene(crowd(), ""));
   for (const auto& scheme : schemes()) {
     const std::string name(scheme->info().name);

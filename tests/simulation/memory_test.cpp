@@ -2,10 +2,11 @@
 #include "core/reading/scene_reader.hpp"
 #include "simulation/simulate.hpp"
 #include "tests/catch.hpp"
+#include "tests/sanitizers.hpp"
 
 #include <algorithm>
 
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(__GLIBC__) && !defined(KAIROS_SANITIZED_MEMORY)
 #if __GLIBC_PREREQ(2, 33)
 #include <malloc.h>
 #define KAIROS_COUNTS_MEMORY

@@ -9,14 +9,11 @@
 #include "tests/simulation/ledger_check.hpp"
 
 #include <cmath>
-#include <limits>
 #include <string>
 
 using namespace kairos;
 
 namespace {
-
-constexpr double eps = std::numeric_limits<double>::epsilon();
 
 const std::string two_bodies = R"(
 duration = 2

@@ -477,7 +477,7 @@ TEST_CASE("turning: dominoes hand their fall on", "[turning]") {
 
 // Nothing pushes them to a side: what roundoff does at one end of an edge and not at the other is
 // not to grow. It did where the centroid of a sliver was taken for the middle of an edge.
-TEST_CASE("turning: dominoes that fall straight on go on so", "[turning]") {
+TEST_CASE("turning: dominoes that fall straight on go on so", "[turning][slow]") {
   Scene scene = read_scene(find_scene("dominoes"));
   scene.duration = 1.66;
   const auto sim = simulate(scene, {});

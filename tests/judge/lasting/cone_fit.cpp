@@ -1,9 +1,9 @@
 #include "tests/judge/lasting/cone_fit.hpp"
 
-#include <Eigen/QR>
-
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace kairos::judge {
 namespace {
@@ -17,10 +17,91 @@ struct Ray {
   Column gives;
 };
 
+/// Least squares by a QR decomposition that columns of length one come to and leave by turns of two
+/// rows [Lawson1974, ch. 24].
+class LeastSquares {
+ public:
+  explicit LeastSquares(const Column& asked)
+      : q_(Table::Identity(asked.size(), asked.size())),
+        r_(asked.size(), asked.size()),
+        columns_(asked.size(), asked.size()),
+        asked_(asked) {}
+
+  /// As the last; false where the others make it up.
+  bool add(const Column& column) {
+    const Eigen::Index m = asked_.size();
+    if (size_ == m) {
+      return false;
+    }
+    Column r = q_.transpose() * column;
+    if (!(r.tail(m - size_).norm() > 64 * rounding)) {
+      return false;
+    }
+    for (Eigen::Index i = m - 1; i > size_; --i) {
+      turn(i - 1, r[i - 1], r[i]);
+    }
+    r_.col(size_) = r;
+    columns_.col(size_) = column;
+    ++size_;
+    return true;
+  }
+  void remove(Eigen::Index place) {
+    --size_;
+    for (Eigen::Index j = place; j < size_; ++j) {
+      r_.col(j) = r_.col(j + 1);
+      columns_.col(j) = columns_.col(j + 1);
+    }
+    for (Eigen::Index j = place; j < size_; ++j) {
+      const auto [c, s] = turn(j, r_(j, j), r_(j + 1, j));
+      for (Eigen::Index k = j + 1; k < size_; ++k) {
+        const Real upper = r_(j, k);
+        r_(j, k) = c * upper + s * r_(j + 1, k);
+        r_(j + 1, k) = c * r_(j + 1, k) - s * upper;
+      }
+    }
+  }
+  /// Weights of the columns; what many turns have rounded is put right once.
+  [[nodiscard]] Column solve() const {
+    Column x = solve(asked_);
+    x += solve(asked_ - columns_.leftCols(size_) * x);
+    return x;
+  }
+
+ private:
+  using Table = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
+
+  [[nodiscard]] Column solve(const Column& b) const {
+    Column x = q_.leftCols(size_).transpose() * b;
+    r_.topLeftCorner(size_, size_).triangularView<Eigen::Upper>().solveInPlace(x);
+    return x;
+  }
+
+  /// Turns rows i and i + 1 of R so that of x and y in them x is left: cosine and sine.
+  std::pair<Real, Real> turn(Eigen::Index i, Real& x, Real& y) {
+    const Real length = std::hypot(x, y);
+    const Real c = length > 0 ? x / length : 1;
+    const Real s = length > 0 ? y / length : 0;
+    x = length;
+    y = 0;
+    for (Eigen::Index k = 0; k < q_.rows(); ++k) {
+      const Real left = q_(k, i);
+      q_(k, i) = c * left + s * q_(k, i + 1);
+      q_(k, i + 1) = c * q_(k, i + 1) - s * left;
+    }
+    return {c, s};
+  }
+
+  Table q_;
+  Table r_;
+  Table columns_;
+  Eigen::Index size_ = 0;
+  const Column& asked_;
+};
+
 class Fit {
  public:
   Fit(const std::vector<ForceSet>& sets, const Column& asked)
-      : sets_(sets), asked_(asked), left_(asked) {}
+      : sets_(sets), asked_(asked), left_(asked), carrying_(asked) {}
 
   ConeFit run() {
     for (std::size_t k = 0; k < sets_.size(); ++k) {
@@ -91,17 +172,6 @@ class Fit {
     return any;
   }
 
-  /// Weights of those that carry, by QR; puts the rest into `left_`.
-  [[nodiscard]] std::vector<Real> weights(const std::vector<std::size_t>& carry) const {
-    Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic> columns(
-        asked_.size(), static_cast<Eigen::Index>(carry.size()));
-    for (std::size_t j = 0; j < carry.size(); ++j) {
-      columns.col(static_cast<Eigen::Index>(j)) = rays_[carry[j]].gives;
-    }
-    const Column x = columns.householderQr().solve(asked_);
-    return {x.data(), x.data() + x.size()};
-  }
-
   void update_left() {
     left_ = asked_;
     for (std::size_t i = 0; i < rays_.size(); ++i) {
@@ -134,40 +204,45 @@ class Fit {
 
   /// Lets one more carry; false where that changes nothing.
   bool take_in(std::size_t more) {
-    std::vector<std::size_t> carry{more};
-    for (std::size_t i = 0; i < rays_.size(); ++i) {
-      if (weight_[i] > 0) {
-        carry.push_back(i);
-      }
+    if (!carrying_.add(rays_[more].gives)) {
+      return false;
     }
-    while (!carry.empty()) {
-      const std::vector<Real> x = weights(carry);
-      if (!std::isfinite(x[0]) || (carry[0] == more && !(x[0] > 0))) {
-        weight_[more] = 0;
-        return false;
-      }
+    carry_.push_back(more);
+    Column x = carrying_.solve();
+    if (!(x[x.size() - 1] > 0)) {
+      drop(carry_.size() - 1);
+      return false;
+    }
+    while (true) {
       Real step = 1;
-      for (std::size_t j = 0; j < carry.size(); ++j) {
-        const Real w = weight_[carry[j]];
-        if (!(x[j] > 0)) {
-          step = std::min(step, w / (w - x[j]));
+      for (std::size_t j = 0; j < carry_.size(); ++j) {
+        const Real w = weight_[carry_[j]];
+        const Real wanted = x[static_cast<Eigen::Index>(j)];
+        if (!(wanted > 0)) {
+          step = std::min(step, w / (w - wanted));
         }
       }
-      std::vector<std::size_t> stay;
-      for (std::size_t j = 0; j < carry.size(); ++j) {
-        Real& w = weight_[carry[j]];
-        const bool leaves = !(x[j] > 0) && w / (w - x[j]) <= step;
-        w = leaves ? 0 : w + step * (x[j] - w);
-        if (!leaves) {
-          stay.push_back(carry[j]);
+      bool all_stay = true;
+      for (std::size_t j = carry_.size(); j-- > 0;) {
+        Real& w = weight_[carry_[j]];
+        const Real wanted = x[static_cast<Eigen::Index>(j)];
+        const bool leaves = !(wanted > 0) && w / (w - wanted) <= step;
+        w = leaves ? 0 : w + step * (wanted - w);
+        if (leaves) {
+          drop(j);
+          all_stay = false;
         }
       }
-      if (stay.size() == carry.size()) {
+      if (all_stay || carry_.empty()) {
         return true;
       }
-      carry = std::move(stay);
+      x = carrying_.solve();
     }
-    return true;
+  }
+
+  void drop(std::size_t place) {
+    carrying_.remove(static_cast<Eigen::Index>(place));
+    carry_.erase(carry_.begin() + static_cast<std::ptrdiff_t>(place));
   }
 
   const std::vector<ForceSet>& sets_;
@@ -175,6 +250,8 @@ class Fit {
   Column left_;
   std::vector<Ray> rays_;
   std::vector<Real> weight_;
+  std::vector<std::size_t> carry_;  ///< rays that do
+  LeastSquares carrying_;           ///< of their columns
 };
 
 }  // namespace
