@@ -184,7 +184,11 @@ RandomSites random_sites(const Region& region, std::span<const double> radii, st
     const Vector3 size = room(region, radii[i]);
     bool found = false;
     for (int draw = 0; draw < most_draws && !found && (size.array() >= 0.0).all(); ++draw) {
-      const Vector3 part(random.uniform(), random.uniform(), random.uniform());
+      // One draw a statement: compilers differ in which argument they make first.
+      const double z = random.uniform();
+      const double y = random.uniform();
+      const double x = random.uniform();
+      const Vector3 part(x, y, z);
       const Vector3 centre = within(
           region, radii[i], region.lowest + Vector3::Constant(radii[i]) + size.cwiseProduct(part));
       found = cells.all_near(centre, [&](std::size_t b) {

@@ -31,7 +31,8 @@ struct RandomSites {
 };
 /// Random sequential addition [Widom1966]: the greatest first, each is drawn uniformly within the
 /// region until it touches none that is there. It ends where a ball finds no place in 20,000 draws:
-/// equal balls jam at 0.384 of the volume. The same for the same seed.
+/// equal balls jam at 0.384 of the volume. The same for the same seed: a draw takes z, y, x of
+/// `Random(seed)`, in this order.
 [[nodiscard]] RandomSites random_sites(const Region& region, std::span<const double> radii,
                                        std::uint64_t seed);
 

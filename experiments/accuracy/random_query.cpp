@@ -8,9 +8,13 @@ Shape random_shape(Random& random, int kind, double size) {
   switch (kind) {
     case 0:
       return Sphere{size * random.uniform(0.2, 1.0)};
-    case 1:
-      return box(size * random.uniform(0.1, 1.0), size * random.uniform(0.1, 1.0),
-                 size * random.uniform(0.1, 1.0));
+    case 1: {
+      // One draw a statement: compilers differ in which argument they make first.
+      const double z = size * random.uniform(0.1, 1.0);
+      const double y = size * random.uniform(0.1, 1.0);
+      const double x = size * random.uniform(0.1, 1.0);
+      return box(x, y, z);
+    }
     default:
       return HalfSpace{};
   }
@@ -52,8 +56,8 @@ Query random_query(Difficulty difficulty, ShapeKinds kinds, std::uint64_t seed) 
   Pose at_a{offset + random.vector(0.5 * size), random.orientation()};
   Pose at_b{offset + size * random.uniform(2.0, 5.0) * away, random.orientation()};
   Twist twist_a{random.vector(3.0 * size), random.vector(w)};
-  Twist twist_b{random.vector(2.0 * size) - random.uniform(0.0, 4.0) * size * away,
-                random.vector(w)};
+  const Vector3 approach = random.uniform(0.0, 4.0) * size * away;
+  Twist twist_b{random.vector(2.0 * size) - approach, random.vector(w)};
   if (kinds.b == 2) {
     at_b.orientation = rotation_between(Vector3::UnitY(), -away);
     at_b.position = offset + random.uniform(1.5, 3.0) * size * away;

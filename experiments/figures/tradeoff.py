@@ -49,7 +49,7 @@ def by_work(figures, scene, rows, reference):
         panel.set_ylabel(label)
         label_zero(panel, [row[error] for row in rows])
     for panel in panels[-1]:
-        panel.set_xlabel("counted work: right-hand sides,\noverlap tests, gap evaluations")
+        panel.set_xlabel("counted work: right-hand sides, overlap\ntests, gap evaluations, contact solves")
     legend(figure, rows)
     figures.save(figure, f"{scene}-work", f"{scene}: {reference['compared']}. Reference: "
                  f"{reference['reference']}. Dotted: nothing cheaper is better. Marks on the upper "

@@ -74,6 +74,20 @@ std::vector<std::string> SpecSection::texts(std::string_view key) const {
   return texts;
 }
 
+std::vector<double> SpecSection::positive_numbers(std::string_view key) const {
+  std::vector<double> numbers;
+  if (const auto found = find(key)) {
+    for (const Value& value : found->array()) {
+      const Item item(value, fmt::format("{}[{}]", found->path(), numbers.size() + 1));
+      numbers.push_back(number_of(item, {}));
+      if (!(numbers.back() > 0.0)) {
+        item.fail(fmt::format("{} is not allowed; allowed: > 0", numbers.back()));
+      }
+    }
+  }
+  return numbers;
+}
+
 std::vector<SpecSection> SpecSection::tables(std::string_view key) const {
   std::vector<SpecSection> tables;
   const auto item = table_.find(key);

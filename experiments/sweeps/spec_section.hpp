@@ -36,6 +36,7 @@ class SpecSection {
   /// A finite number, or an expression over `values`; the key must be there.
   [[nodiscard]] double number(std::string_view key, const Values& values) const;
   [[nodiscard]] std::vector<std::string> texts(std::string_view key) const;
+  [[nodiscard]] std::vector<double> positive_numbers(std::string_view key) const;
   /// The tables of `[[key]]`, or the one table of `[key]`.
   [[nodiscard]] std::vector<SpecSection> tables(std::string_view key) const;
   /// The table at `key`, which must be there and be one; `form` says what is allowed.

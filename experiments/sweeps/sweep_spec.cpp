@@ -226,8 +226,8 @@ std::string lower_case(std::string text) {
 
 ExperimentSpec read_root(const SpecSection& section, const std::string& path) {
   Keys keys = sweep_keys();
-  keys.insert(keys.end(),
-              {"name", "title", "asks", "how", "finding", "figure", "sweep", "program", "scenes"});
+  keys.insert(keys.end(), {"name", "title", "asks", "how", "finding", "figure", "sweep", "program",
+                           "scenes", "durations"});
   section.allow(keys);
   ExperimentSpec experiment;
   experiment.path = path;
@@ -245,6 +245,14 @@ ExperimentSpec read_root(const SpecSection& section, const std::string& path) {
   experiment.program = section.text("program");
   if (section.find("scenes")) {
     experiment.scenes = section.texts("scenes");
+  }
+  if (section.find("durations")) {
+    experiment.durations = section.positive_numbers("durations");
+    if (experiment.durations.size() != experiment.scenes.size()) {
+      section.fail("durations",
+                   fmt::format("{} are not allowed; allowed: one for each of {} scenes",
+                               experiment.durations.size(), experiment.scenes.size()));
+    }
   }
   if (!experiment.program.empty()) {
     experiment.program_line = section.find("program")->value().line;

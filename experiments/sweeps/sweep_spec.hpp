@@ -103,6 +103,7 @@ struct ExperimentSpec {
   std::string program;   ///< what is run instead of sweeps (`run_experiment`); empty: the sweeps
   int program_line = 0;  ///< where it was written
   std::vector<std::string> scenes;  ///< of a program
+  std::vector<double> durations;    ///< of these, s; empty: their own
   std::vector<SweepSpec> sweeps;
 };
 

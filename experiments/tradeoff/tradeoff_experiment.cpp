@@ -86,9 +86,10 @@ ProgramOutput tradeoff_output(const std::vector<Assessment>& assessments, Table 
 ProgramOutput run_tradeoff(const ExperimentSpec& spec, Size size, std::size_t threads) {
   std::vector<Assessment> assessments;
   Table timings, recommended;
-  for (const std::string& name : spec.scenes) {
-    const Model model(read_scene(find_scene(name)));
-    assessments.push_back(assess(model, model.scene().duration, threads));
+  for (std::size_t k = 0; k < spec.scenes.size(); ++k) {
+    const Model model(read_scene(find_scene(spec.scenes[k])));
+    const double duration = spec.durations.empty() ? model.scene().duration : spec.durations[k];
+    assessments.push_back(assess(model, duration, threads));
     const Table times = timing_table(model, assessments.back(), size == Size::quick ? 3 : 9);
     timings.columns = times.columns;
     timings.rows.insert(timings.rows.end(), times.rows.begin(), times.rows.end());

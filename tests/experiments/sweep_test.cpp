@@ -46,6 +46,39 @@ std::string complaint(const std::string& text) {
 
 }  // namespace
 
+TEST_CASE("a program's scenes have a duration each, of the size asked for, or none is given",
+          "[sweep]") {
+  const std::string text = "program = \"tradeoff\"\nscenes = [\"stack\", \"spring\"]\n";
+  const std::string both = text + "durations = { quick = [1, \"1/2\"], full = [10, 2] }\n";
+  CHECK(parse_experiment(text, "spec.toml", Size::quick).durations.empty());
+  CHECK(parse_experiment(both, "spec.toml", Size::quick).durations == std::vector{1.0, 0.5});
+  CHECK(parse_experiment(both, "spec.toml", Size::full).durations == std::vector{10.0, 2.0});
+  for (const auto& [given, reason] :
+       {std::pair{"[1]", "durations: 1 are not allowed; allowed: one for each of 2 scenes"},
+        {"[1, 0]", "durations[2]: 0 is not allowed; allowed: > 0"},
+        {"[1, nan]", "durations[2]"},
+        {"1", "durations"}}) {
+    CAPTURE(given);
+    const std::string said = complaint(text + "durations = " + given + "\n");
+    CHECK(said.starts_with("spec.toml:3: "));
+    CHECK(said.find(reason) != std::string::npos);
+  }
+}
+
+TEST_CASE("joint_drift: what a joint is off by, of the size of its mechanism", "[sweep]") {
+  // A rod of 1 m: its ball is held 1 m from the anchor to roundoff, by whatever integrator.
+  const SweepSpec held =
+      spec("scene = \"double-pendulum\"\nmetrics = [\"joint_drift\"]\n[options]\nduration = 1\n");
+  const experiments::Table runs = run_sweep(held, 1).runs;
+  const double drift = std::get<double>(runs.rows.front().at(runs.column("joint_drift")));
+  CHECK(drift > 0.0);
+  CHECK(drift <= 1e-12);
+  // Nothing is jointed: there is nothing to be off.
+  const SweepSpec loose = spec("scene = \"bullet\"\nmetrics = [\"joint_drift\"]\n");
+  const experiments::Table unjointed = run_sweep(loose, 1).runs;
+  CHECK(std::get<double>(unjointed.rows.front().at(unjointed.column("joint_drift"))) == 0.0);
+}
+
 TEST_CASE("axes: lists, linear and logarithmic ranges include their ends", "[sweep]") {
   const SweepSpec sweep = spec(head + R"(
 [constants]

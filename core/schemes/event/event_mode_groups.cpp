@@ -129,10 +129,12 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
   };
   // What joints hold together was struck together.
   const auto hangs_on_seed = [&](BodyIndex i) {
-    const JointSystem* const joints =
-        run_.model.is_free(i) ? run_.model.islands()[run_.model.island_of(i)].joints : nullptr;
-    const std::vector<BodyIndex>& mates = motions_.island(i);
-    return joints != nullptr && std::any_of(mates.begin(), mates.end(), is_seed);
+    if (!run_.model.is_free(i)) {
+      return false;  // it is of no island
+    }
+    const Island& island = run_.model.islands()[run_.model.island_of(i)];
+    return island.joints != nullptr &&
+           std::any_of(island.bodies.begin(), island.bodies.end(), is_seed);
   };
   const auto state_of = [&](BodyIndex i) {
     const bool known = is_seed(i) || run_.model.mobility(i) == Mobility::fixed || hangs_on_seed(i);
