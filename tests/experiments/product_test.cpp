@@ -8,11 +8,11 @@
 #include "simulation/scene_library.hpp"
 #include "simulation/simulate.hpp"
 #include "tests/catch.hpp"
+#include "tests/thoroughness.hpp"
 
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdlib>
 #include <exception>
 #include <string>
 #include <vector>
@@ -83,12 +83,11 @@ Walk walk(const Model& model, const MethodChoice& method, double duration) {
 
 }  // namespace
 
-// Each scene has a quarter of the combinations, and each combination every fourth scene: all of
-// them on all scenes take five minutes of a processor (KAIROS_WHOLE_PRODUCT=1).
+// Each scene has an eighth of the combinations, and each combination every eighth scene: all of
+// them on all scenes take many minutes of a processor (./test --thorough).
 TEST_CASE("every combination on the shipped scenes runs or is refused with a reason",
           "[product][slow]") {
-  const bool whole = std::getenv("KAIROS_WHOLE_PRODUCT") != nullptr;
-  const std::size_t every = whole ? 1 : 4;
+  const std::size_t every = tests::thorough() ? 1 : 8;
   const std::vector<MethodChoice> choices = product();
   REQUIRE(choices.size() >= 5 * 8 * 4 * 2);
   REQUIRE_FALSE(shipped_scenes().empty());

@@ -17,6 +17,7 @@
 #include "simulation/simulate.hpp"
 #include "tests/catch.hpp"
 #include "tests/experiments/program.hpp"
+#include "tests/thoroughness.hpp"
 
 #include <fmt/format.h>
 
@@ -155,9 +156,12 @@ TEST_CASE("scenes of balls that failed once", "[random]") {
   // crossed on ever shorter ways (29833), and a ball was not told of a wall in touch with it
   // (58680, 92604); where 89529 stopped depended on how often balls crossed.
   using Case = std::pair<std::uint64_t, std::uint64_t>;
-  for (const auto& [from, index] :
-       {Case{15, 40473}, Case{15, 2788}, Case{15, 8949}, Case{20261124, 432}, Case{20261125, 29833},
-        Case{20261125, 58680}, Case{20261125, 92604}, Case{20261125, 89529}}) {
+  std::vector<Case> failed{{15, 40473},       {15, 2788},        {15, 8949},       {20261124, 432},
+                           {20261125, 29833}, {20261125, 58680}, {20261125, 92604}};
+  if (tests::thorough()) {
+    failed.emplace_back(20261125, 89529);  // 80 s
+  }
+  for (const auto& [from, index] : failed) {
     const Trial trial = try_by_two_searches(balls_scene(from, index));
     INFO(index << ": " << to_string(trial.fate) << ": " << trial.reason);
     CHECK_FALSE(trial.failed());
@@ -309,7 +313,8 @@ int right_of(SceneKind kind, std::uint64_t count, std::uint64_t of_seed = seed) 
 TEST_CASE("scenes that start in touch break no promise, and every stop says what to do",
           "[random]") {
   // Elastic ones, rows, and what comes to rest.
-  CHECK(right_of(SceneKind::touching, 300) > 240);
+  const int count = tests::thorough() ? 300 : 120;
+  CHECK(right_of(SceneKind::touching, static_cast<std::uint64_t>(count)) > count * 4 / 5);
 }
 
 TEST_CASE("scenes with friction break no promise, and every stop says what to do",

@@ -100,8 +100,8 @@ class LeastSquares {
 
 class Fit {
  public:
-  Fit(const std::vector<ForceSet>& sets, const Column& asked)
-      : sets_(sets), asked_(asked), left_(asked), carrying_(asked) {}
+  Fit(const std::vector<ForceSet>& sets, const Column& asked, Real enough)
+      : sets_(sets), asked_(asked), enough_(enough), left_(asked), carrying_(asked) {}
 
   ConeFit run() {
     for (std::size_t k = 0; k < sets_.size(); ++k) {
@@ -110,7 +110,7 @@ class Fit {
     solve();
     int stalls = 0;
     while (static_cast<int>(rays_.size()) < most_rays && stalls < 3 &&
-           left_.norm() > 64 * rounding * asked_.norm() && add_rays()) {
+           left_.norm() > std::max(64 * rounding * asked_.norm(), enough_) && add_rays()) {
       const Real before = left_.norm();
       solve();
       stalls = left_.norm() > (1 - 1e-6L) * before ? stalls + 1 : 0;
@@ -195,7 +195,8 @@ class Fit {
           most = pull;
         }
       }
-      if (best == rays_.size() || left_.norm() <= 16 * rounding * asked_.norm()) {
+      if (best == rays_.size() ||
+          left_.norm() <= std::max(16 * rounding * asked_.norm(), enough_)) {
         return;
       }
       refused[best] = take_in(best) ? 0 : 1;
@@ -247,6 +248,7 @@ class Fit {
 
   const std::vector<ForceSet>& sets_;
   const Column& asked_;
+  Real enough_;
   Column left_;
   std::vector<Ray> rays_;
   std::vector<Real> weight_;
@@ -256,8 +258,8 @@ class Fit {
 
 }  // namespace
 
-ConeFit fit(const std::vector<ForceSet>& sets, const Column& asked) {
-  return Fit(sets, asked).run();
+ConeFit fit(const std::vector<ForceSet>& sets, const Column& asked, Real enough) {
+  return Fit(sets, asked, enough).run();
 }
 
 }  // namespace kairos::judge

@@ -25,7 +25,8 @@ struct ConeFit {
 /// The forces within their sets that come nearest to what is asked for. Rays of the round cones are
 /// made as they are needed, each the one that the rest pulls most (a fully corrective Frank-Wolfe
 /// method), and weights are found by Lawson and Hanson's active sets [Lawson1974, ch. 23]: exact
-/// for the round cone, in long double.
-[[nodiscard]] ConeFit fit(const std::vector<ForceSet>& sets, const Column& asked);
+/// for the round cone, in long double. What is left may be as much as `enough`: the search ends
+/// there.
+[[nodiscard]] ConeFit fit(const std::vector<ForceSet>& sets, const Column& asked, Real enough = 0);
 
 }  // namespace kairos::judge

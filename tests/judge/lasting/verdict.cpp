@@ -34,6 +34,8 @@ constexpr Real put_right = 1e-10L;
 constexpr Real slow = 1e-4L;
 /// And slower than this it sticks.
 constexpr Real sticks = 1e-7L;
+/// Of what forces may leave: less is not looked for.
+constexpr Real far_below = 1e-3L;
 /// Rounding that the project allows in a gap: 16 times 12 eps of what it is a sum of.
 constexpr Real hidden = 16 * 12 * Real(std::numeric_limits<double>::epsilon());
 
@@ -360,10 +362,11 @@ class Judge {
       return;
     }
     const Column needed = asked(bodies, rows);
-    ConeFit found = fit(sets, needed);
+    const Real allowed = look_.allowed.forces + put_right * fall / (a * step);
+    const Real enough = far_below * allowed * a;
+    ConeFit found = fit(sets, needed, enough);
     BodyIndex who = bodies[0];
     Real worst = worst_of(bodies, found, who);
-    const Real allowed = look_.allowed.forces + put_right * fall / (a * step);
     if (worst > allowed * a) {
       bool any = false;
       for (std::size_t k = 0; k < sets.size(); ++k) {
@@ -375,7 +378,7 @@ class Judge {
       }
       if (any) {
         ++(stepped ? verdict_.turned : verdict_.slow);
-        found = fit(sets, needed);
+        found = fit(sets, needed, enough);
         worst = worst_of(bodies, found, who);
       }
     }
