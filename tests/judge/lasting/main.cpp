@@ -35,9 +35,10 @@ struct Arguments {
 
 void print_head() {
   fmt::print(
-      "{:24} {:>7} {:>8} {:>8} {:>8} {:>6} {:>6} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n",
-      "scene", "times", "groups", "sticks", "slides", "slow", "steps", "depth", "forces", "stepped",
-      "creep", "strays", "jump", "gains");
+      "{:24} {:>7} {:>8} {:>8} {:>8} {:>6} {:>6} {:>6} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} "
+      "{:>8}\n",
+      "scene", "times", "groups", "sticks", "slides", "slow", "brief", "steps", "depth", "forces",
+      "stepped", "creep", "strays", "jump", "gains");
 }
 
 /// Whether all is right; told another friction than there is, whether that was found out.
@@ -59,9 +60,9 @@ bool judge_scene(const std::string& name, const Scene& scene, const Arguments& a
     return true;
   }
   fmt::print(
-      "{:24} {:7} {:8} {:8} {:8} {:6} {:6} {:8.1e} {:8.1e} {:8.1e} {:8.1e} {:8.1e} {:8.1e} "
+      "{:24} {:7} {:8} {:8} {:8} {:6} {:6} {:6} {:8.1e} {:8.1e} {:8.1e} {:8.1e} {:8.1e} {:8.1e} "
       "{:8.1e}{}\n",
-      name, v.instants, v.groups, v.sticking, v.sliding, v.slow, v.stepped,
+      name, v.instants, v.groups, v.sticking, v.sliding, v.slow, v.brief, v.stepped,
       static_cast<double>(v.depth), static_cast<double>(v.forces), static_cast<double>(v.in_steps),
       static_cast<double>(v.creep), static_cast<double>(v.strays), static_cast<double>(v.jump),
       static_cast<double>(v.gains), result.status == RunStatus::completed ? "" : " stopped");

@@ -58,6 +58,7 @@ struct Verdict {
   std::int64_t sticking = 0;  ///< points, by instant
   std::int64_t sliding = 0;
   std::int64_t slow = 0;     ///< groups where friction of a slow slide is not against it
+  std::int64_t brief = 0;    ///< groups not judged: in a step so short that rounding hides forces
   std::int64_t stepped = 0;  ///< groups in an implicit step
   std::int64_t turned = 0;   ///< of these, where friction is not against the slide
   Real depth = 0;            ///< m
