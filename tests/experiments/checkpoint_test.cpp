@@ -172,10 +172,10 @@ TEST_CASE("every scheme and integrator goes on from a checkpoint as if nothing h
   Random random(20261121);
   INFO("seed 20261121");
   const std::size_t every = tests::thorough() ? 1 : 3;
-  std::size_t combination = 0;
+  std::size_t turn = 0;
   int resumed = 0;
   for (const Case& each : cases()) {
-    ++combination;  // so that the next scene has others
+    std::size_t combination = turn++;  // the next scene has others
     for (const auto& scheme : schemes()) {
       for (const std::string& integrator : names) {
         if (combination++ % every != 0) {

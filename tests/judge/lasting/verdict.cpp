@@ -388,8 +388,8 @@ class Judge {
         worst = worst_of(bodies, found, who);
       }
     }
-    if (worst > (stepped ? look_.allowed.stepped : allowed) * a &&
-        worst <= bent * farthest / (step * step)) {
+    const Real most = stepped ? look_.allowed.stepped : allowed;
+    if (worst > most * a && worst <= bent * farthest / (step * step)) {
       ++verdict_.brief;  // rounding of where they are hides what forces there were
       return;
     }
@@ -399,8 +399,7 @@ class Judge {
             std::max(verdict_.friction_power, tangential(presses[k], found.forces[k]));
       }
     }
-    note(Fault::forces, t, worst, a, stepped ? verdict_.in_steps : verdict_.forces,
-         stepped ? look_.allowed.stepped : allowed,
+    note(Fault::forces, t, worst, a, stepped ? verdict_.in_steps : verdict_.forces, most,
          fmt::format("'{}' of {} with {} points{}", model_.body(who).name, bodies.size(),
                      sets.size(), stepped ? " (stepped)" : ""));
   }
