@@ -34,7 +34,8 @@ class Builder {
       b.shape = "sphere";
       b.radius = chance(share_of_large_) ? large_ : usual_ * random_.uniform(spread_, 1.0);
       b.mass = one_mass ? 1.0 : random_.log_uniform(1e-2, 1e2);
-      b.velocity = speed_ * random_.uniform(0.0, 1.5) * random_.direction();
+      const Vector3 way = random_.direction();
+      b.velocity = speed_ * random_.uniform(0.0, 1.5) * way;
       b.restitution = loses ? random_.uniform(least, 1.0) : 1.0;
       b.name = fmt::format("ball-{}", k + 1);
       place(b);

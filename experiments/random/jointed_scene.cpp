@@ -79,16 +79,15 @@ class Builder : SceneBuilder {
       b.spin = b.entity == "ball" ? Vector3(Vector3::Zero()) : spin;
     }
   }
-  Vector3 some_spin() {
-    return chance(0.4) ? Vector3(Vector3::Zero())
-                       : Vector3(random_.direction() * random_.uniform(0.0, 6.0));
-  }
+  Vector3 some_spin() { return chance(0.4) ? Vector3(Vector3::Zero()) : vector(0.0, 6.0); }
   /// A direction away from the anchor, seldom straight up.
   Vector3 hanging() {
-    return chance(0.3) ? Vector3(Vector3::UnitX())
-                       : Vector3(Vector3(random_.uniform(-1.0, 1.0), random_.uniform(-1.0, 0.3),
-                                         chance(0.5) ? 0.0 : random_.uniform(-1.0, 1.0))
-                                     .normalized());
+    if (chance(0.3)) {
+      return Vector3::UnitX();
+    }
+    const double z = chance(0.5) ? 0.0 : random_.uniform(-1.0, 1.0);
+    const double y = random_.uniform(-1.0, 0.3);
+    return Vector3(random_.uniform(-1.0, 1.0), y, z).normalized();
   }
   /// A link from one end to the other: a box along the way.
   RandomBody& link(const Vector3& from, const Vector3& to) {
@@ -102,7 +101,8 @@ class Builder : SceneBuilder {
 
   /// One body on a hinge, a ball joint or a rod.
   void pendulum() {
-    const Vector3 away = hanging() * random_.uniform(0.3, 1.0);
+    const double length = random_.uniform(0.3, 1.0);
+    const Vector3 away = hanging() * length;
     const double kind = random_.uniform();
     if (kind < 0.3) {
       const std::string name = ball(away, 0.3 * away.norm()).name;
@@ -163,7 +163,8 @@ class Builder : SceneBuilder {
       // Not onto one of those before.
       const Vector3 from = at;
       do {
-        at = from + hanging() * random_.uniform(0.4, 0.8);
+        const double length = random_.uniform(0.4, 0.8);
+        at = from + hanging() * length;
       } while (std::any_of(scene_.bodies.begin(), scene_.bodies.end(),
                            [&](const RandomBody& b) { return (b.position - at).norm() < 0.17; }));
       const std::string name = ball(at, 0.08).name;
@@ -175,7 +176,8 @@ class Builder : SceneBuilder {
 
   /// A plate on an upright hinge.
   void door() {
-    const Vector3 half(random_.uniform(0.3, 0.6), random_.uniform(0.3, 0.6), 0.05);
+    const double high = random_.uniform(0.3, 0.6);
+    const Vector3 half(random_.uniform(0.3, 0.6), high, 0.05);
     const std::string name = box({half.x(), 0.0, 0.0}, half).name;
     const Vector3 axis = chance(0.8) ? Vector3(Vector3::UnitY()) : Vector3(0.3, 1.0, 0.0);
     join("hinge", {name}, Vector3::Zero(), axis);
@@ -205,7 +207,7 @@ class Builder : SceneBuilder {
     const std::string b = box({0.2, 0.25, 0.0}, {0.1, 0.15, 0.1}).name;
     join("weld", {a, b});
     turn_about(Vector3(0.1, 0.1, 0.0), some_spin());
-    const Vector3 v = random_.direction() * random_.uniform(0.0, 4.0);
+    const Vector3 v = vector(0.0, 4.0);
     for (RandomBody& body : scene_.bodies) {
       body.velocity += v;
     }
@@ -233,7 +235,7 @@ class Builder : SceneBuilder {
   void hand() {
     RandomBody& driver = box(Vector3::Zero(), {0.1, 0.1, 0.1});
     driver.entity = "wall";
-    driver.swing = random_.direction() * random_.uniform(0.02, 0.3);
+    driver.swing = vector(0.02, 0.3);
     driver.frequency = random_.log_uniform(0.2, 3.0);
     driver.phase = chance(0.5) ? 0.0 : random_.uniform(0.0, 6.0);
     const std::string from = driver.name;
@@ -268,10 +270,10 @@ class Builder : SceneBuilder {
     for (std::uint64_t k = random_.below(4); k > 0; --k) {
       RandomBody& b = chance(0.6) ? ball(Vector3::Zero(), random_.uniform(0.05, 0.15))
                                   : box(Vector3::Zero(), {0.1, random_.uniform(0.05, 0.2), 0.1});
-      b.velocity = random_.direction() * random_.uniform(0.0, 3.0);
+      b.velocity = vector(0.0, 3.0);
       if (b.entity == "body" && chance(0.5)) {
-        b.turned = random_.direction() * random_.uniform(0.0, 3.0);
-        b.spin = random_.direction() * random_.uniform(0.0, 5.0);
+        b.turned = vector(0.0, 3.0);
+        b.spin = vector(0.0, 5.0);
       }
       place_last(1.5 * reach);
     }

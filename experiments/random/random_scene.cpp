@@ -2,6 +2,7 @@
 
 #include "core/random.hpp"
 #include "experiments/random/random_shape.hpp"
+#include "experiments/random/scene_builder.hpp"
 
 #include <fmt/format.h>
 
@@ -124,10 +125,9 @@ class Maker {
       b.entity = "anti-gravity-pad";
     } else {
       b.entity = "wall";
-      b.turned = chance(0.5) ? Vector3(random_.direction() * random_.uniform(0.0, 3.0))
-                             : Vector3(Vector3::Zero());
+      b.turned = chance(0.5) ? random_vector(random_, 0.0, 3.0) : Vector3(Vector3::Zero());
       if (chance(0.3)) {
-        b.swing = random_.direction() * random_.uniform(0.05, 0.4) * length_;
+        b.swing = random_vector(random_, 0.05, 0.4) * length_;
         b.frequency = random_.log_uniform(0.05, 1.0) * speed_ / length_;
         b.phase = random_.uniform(0.0, 6.0);
       }
@@ -148,7 +148,8 @@ class Maker {
     b.radius = size();
     b.half_extents = {size(), size(), size()};
     b.mass = random_.log_uniform(1e-2, 1e2);
-    b.velocity = random_.direction() * speed_ * random_.uniform();
+    const double share = random_.uniform();
+    b.velocity = random_.direction() * speed_ * share;
     // A box that loses speed comes to rest on its edges: that is refused by design.
     const bool loses = chance(b.shape == "box" ? 0.02 : 0.3);
     b.restitution = loses ? random_.uniform(0.3, 1.0) : 1.0;
@@ -156,8 +157,9 @@ class Maker {
       draw_shape(random_, length_, b);
     }
     if (b.entity == "body") {
-      b.turned = random_.direction() * random_.uniform(0.0, 3.0);
-      b.spin = random_.direction() * random_.log_uniform(0.1, 30.0) * speed_ / length_;
+      b.turned = random_vector(random_, 0.0, 3.0);
+      const double rate = random_.log_uniform(0.1, 30.0);
+      b.spin = random_.direction() * rate * speed_ / length_;
     }
     b.name = next_name(b.entity.c_str());
     return b;

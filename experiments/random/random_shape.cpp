@@ -1,5 +1,6 @@
 #include "experiments/random/random_shape.hpp"
 
+#include "experiments/random/scene_builder.hpp"
 #include "simulation/scene_library.hpp"
 
 #include <fmt/format.h>
@@ -62,8 +63,9 @@ class Draw {
       RandomBody part;
       Draw(random_, 0.5 * length_, part).convex(random_.below(convex_kinds));
       part.rounding = 0.0;  // parts have none
-      part.position = random_.direction() * size();
-      part.turned = random_.direction() * random_.uniform(0.0, 3.0);
+      const double away = size();
+      part.position = random_.direction() * away;
+      part.turned = random_vector(random_, 0.0, 3.0);
       body_.parts.push_back(std::move(part));
     }
   }

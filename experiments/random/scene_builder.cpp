@@ -15,6 +15,11 @@ double random_friction(Random& random) {
                     : random.log_uniform(0.01, 2.0);
 }
 
+Vector3 random_vector(Random& random, double shortest, double longest) {
+  const double length = random.uniform(shortest, longest);
+  return random.direction() * length;
+}
+
 SceneBuilder::SceneBuilder(std::uint64_t seed, std::uint64_t index, std::string name)
     : random_(seed, index) {
   scene_.name = std::move(name);

@@ -158,8 +158,10 @@ void SceneWatch::check_joints(std::span<const BodyState> bodies, Instant t) cons
 
 void SceneWatch::check_impacts() {
   for (const Event& event : at_once_) {
-    // With friction restitution is one of work, not of velocities; what jams sticks.
-    if (event.contact.friction > 0.0 || event.flag == EventFlag::painleve) {
+    // With friction restitution is one of work, not of velocities; what jams sticks, and what ends
+    // an impact that is handed on returns nothing.
+    if (event.contact.friction > 0.0 || event.flag == EventFlag::painleve ||
+        event.flag == EventFlag::plastic) {
       continue;
     }
     const double e = model_->restitution(event.a, event.b);

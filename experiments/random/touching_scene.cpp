@@ -50,7 +50,11 @@ class Builder : SceneBuilder {
  private:
   Vector3 half() {
     const double h = size();
-    return chance(0.5) ? Vector3(h, h, h) : Vector3(size(), h, size());
+    if (chance(0.5)) {
+      return {h, h, h};
+    }
+    const double z = size();
+    return {size(), h, z};
   }
 
   /// Boxes or balls on a floor and on each other, at rest or thrown.
@@ -126,8 +130,11 @@ class Builder : SceneBuilder {
     const double r = size();
     const double far = r + (chance(0.3) ? 0.0 : random_.uniform(0.0, 1.0));
     RandomBody& b = ball({far, far, r}, r);
-    b.velocity = chance(0.3) ? Vector3(Vector3::Zero())
-                             : Vector3(-random_.uniform(), -random_.uniform(), -random_.uniform());
+    if (!chance(0.3)) {
+      const double z = -random_.uniform();
+      const double y = -random_.uniform();
+      b.velocity = {-random_.uniform(), y, z};
+    }
     scene_.G = chance(0.5) ? 9.8 : 0.0;
   }
 
