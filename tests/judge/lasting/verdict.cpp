@@ -400,8 +400,9 @@ class Judge {
       }
     }
     note(Fault::forces, t, worst, a, stepped ? verdict_.in_steps : verdict_.forces, most,
-         fmt::format("'{}' of {} with {} points{}", model_.body(who).name, bodies.size(),
-                     sets.size(), stepped ? " (stepped)" : ""));
+         fmt::format(
+             "'{}' of {} with {} points{}", model_.body(who).name, bodies.size(), sets.size(),
+             stepped ? fmt::format(" (stepped, {:.2g} s)", static_cast<double>(step)) : ""));
   }
 
   /// What is seen of a group, for people.
