@@ -27,6 +27,11 @@ constexpr double locked = 1e-12;
 constexpr double hardly_moves = 1e-6;
 /// Part of what an impulse does along the surface by which its direction turns in equilibrium.
 constexpr double settled = 1e-14;
+/// Of the series in which sliding turns, and how much of its radius of convergence is used: what is
+/// left out is 0.1^17.
+constexpr std::size_t order = 16;
+constexpr double part_of_radius = 0.1;
+constexpr int looks = 8;  ///< within such a step, whether the approach has ended
 constexpr int most_phases = 16;
 constexpr int most_steps = 100000;
 
@@ -241,60 +246,90 @@ class Routh {
     failed_ = true;
   }
 
-  /// Follows sliding that turns, by a variable x with dp = |u_t| dx: in x, u_t decays without being
-  /// singular anywhere, at a rate of at most |W_tn| + mu |W_tt|. Steps are a hundredth of that: by
-  /// |W| they would be, with little friction, so short that an impact takes 1e5 of them.
-  void turn() {
-    using State = Eigen::Matrix<double, 8, 1>;  // u, p, work of both
-    const auto rate = [&](const State& s) {
-      const Vector2 t = s.segment<2>(1);
-      const double speed = t.norm();
-      const Vector3 p(speed, -mu_ * t[0], -mu_ * t[1]);
-      State r;
-      r << W_ * p, p, s[0] * speed, -mu_ * t.squaredNorm();
-      return r;
-    };
-    const auto step = [&](const State& s, double h) -> State {  // [Dormand1980]
-      const State k1 = rate(s);
-      const State k2 = rate(s + h * (k1 / 5.0));
-      const State k3 = rate(s + h * (3.0 / 40.0 * k1 + 9.0 / 40.0 * k2));
-      const State k4 = rate(s + h * (44.0 / 45.0 * k1 - 56.0 / 15.0 * k2 + 32.0 / 9.0 * k3));
-      const State k5 = rate(s + h * (19372.0 / 6561.0 * k1 - 25360.0 / 2187.0 * k2 +
-                                     64448.0 / 6561.0 * k3 - 212.0 / 729.0 * k4));
-      const State k6 =
-          rate(s + h * (9017.0 / 3168.0 * k1 - 355.0 / 33.0 * k2 + 46732.0 / 5247.0 * k3 +
-                        49.0 / 176.0 * k4 - 5103.0 / 18656.0 * k5));
-      return s + h * (35.0 / 384.0 * k1 + 500.0 / 1113.0 * k3 + 125.0 / 192.0 * k4 -
-                      2187.0 / 6784.0 * k5 + 11.0 / 84.0 * k6);
-    };
-    const auto ends = [&](const State& s) {
-      return course_.springs_back ? s[6] + course_.most - e_ * e_ * course_.most >= 0.0
-                                  : s[0] >= 0.0;
-    };
-    State s;
-    s << course_.u, course_.p, course_.work, course_.rubbed;
-    const double h = 0.01 / (W_.block<2, 1>(1, 0).norm() + mu_ * W_.block<2, 2>(1, 1).norm());
-    for (int k = 0; k < most_steps; ++k) {
-      State next = step(s, h);
-      const bool end = ends(next);
-      if (end) {
-        double low = 0.0;
-        double high = h;
-        for (int halvings = 0; halvings < 60; ++halvings) {
-          const double middle = 0.5 * (low + high);
-          (ends(step(s, middle)) ? high : low) = middle;
-        }
-        next = step(s, high);
+  /// u, p, and the work of both, as polynomials in x, see `turn`.
+  struct Series {
+    std::array<std::array<double, order + 1>, 8> of;
+    double radius = infinity;  ///< about that of convergence
+
+    [[nodiscard]] double at(std::size_t i, double x) const {
+      double value = of[i][order];
+      for (std::size_t k = order; k-- > 0;) {
+        value = value * x + of[i][k];
       }
-      s = next;
-      course_.u = s.head<3>();
-      course_.p = s.segment<3>(3);
-      course_.work = s[6];
-      course_.rubbed = s[7];
+      return value;
+    }
+  };
+
+  /// The Taylor series of the course from where it is: its products and the root of one are
+  /// multiplied out, coefficient by coefficient.
+  [[nodiscard]] Series series() const {
+    Series y;
+    const auto put = [&](std::size_t k, const Vector3& u, const Vector3& p, double work,
+                         double rubbed) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        y.of[i][k] = u[static_cast<Eigen::Index>(i)];
+        y.of[3 + i][k] = p[static_cast<Eigen::Index>(i)];
+      }
+      y.of[6][k] = work;
+      y.of[7][k] = rubbed;
+    };
+    put(0, course_.u, course_.p, course_.work, course_.rubbed);
+    const auto& [u, t1, t2, p0, p1, p2, work, rubbed] = y.of;
+    std::array<double, order + 1> speed{};
+    for (std::size_t k = 0; k < order; ++k) {
+      double square = 0.0;  // of the speed along the surface
+      double given = 0.0;   // u times that speed
+      double known = 0.0;   // of the square, what earlier coefficients of the speed make
+      for (std::size_t i = 0; i <= k; ++i) {
+        square += t1[i] * t1[k - i] + t2[i] * t2[k - i];
+        known += i > 0 && i < k ? speed[i] * speed[k - i] : 0.0;
+      }
+      speed[k] = k == 0 ? std::sqrt(square) : (square - known) / (2.0 * speed[0]);
+      for (std::size_t i = 0; i <= k; ++i) {
+        given += u[i] * speed[k - i];
+      }
+      const Vector3 p(speed[k], -mu_ * t1[k], -mu_ * t2[k]);
+      const double part = 1.0 / static_cast<double>(k + 1);
+      put(k + 1, part * (W_ * p), part * p, part * given, -part * mu_ * square);
+    }
+    for (const std::size_t k : {order - 1, order}) {
+      const double last = Vector2(t1[k], t2[k]).norm() / speed[0];
+      y.radius = std::min(y.radius, 1.0 / std::sqrt(std::sqrt(std::sqrt(std::sqrt(last)))));
+    }
+    return y;
+  }
+
+  /// Follows sliding that turns, by a variable x with dp = |u_t| dx: in x, u_t decays without being
+  /// singular anywhere, at a rate of at most |W_tn| + mu |W_tt|. Its Taylor series
+  /// [Jorba2005] is summed up to a tenth of its radius.
+  void turn() {
+    const double left = e_ * e_ * course_.most;
+    const double slowest = 1.0 / (W_.block<2, 1>(1, 0).norm() + mu_ * W_.block<2, 2>(1, 1).norm());
+    for (int step = 0; step < most_steps; ++step) {
+      const Series y = series();
+      const auto ends = [&](double x) {
+        return course_.springs_back ? y.at(6, x) + course_.most >= left : y.at(0, x) >= 0.0;
+      };
+      double x = std::min(part_of_radius * y.radius, slowest);
+      bool end = false;
+      for (int k = 1; k <= looks && !end; ++k) {
+        double low = x * (k - 1) / looks;
+        double high = x * k / looks;
+        end = ends(high);
+        for (int halvings = 0; end && halvings < 60; ++halvings) {
+          const double middle = 0.5 * (low + high);
+          (ends(middle) ? high : low) = middle;
+        }
+        x = end ? high : x;
+      }
+      course_.u = {y.at(0, x), y.at(1, x), y.at(2, x)};
+      course_.p = {y.at(3, x), y.at(4, x), y.at(5, x)};
+      course_.work = y.at(6, x);
+      course_.rubbed = y.at(7, x);
       if (end) {
         return reached();
       }
-      if (s.segment<2>(1).norm() <= nearly_stopped * slip_ || keeps_direction()) {
+      if (course_.u.tail<2>().norm() <= nearly_stopped * slip_ || keeps_direction()) {
         return;
       }
     }

@@ -27,7 +27,7 @@ struct RouthImpact {
 /// and columns of tangents may be 0, along which joints let nothing move;
 /// `u`: relative velocity before, u_0 < 0, m/s. Components: normal, then two tangents. `mu` >= 0,
 /// may be infinite. Exact (piecewise linear) where sliding keeps its direction, as in a plane and
-/// of spheres; otherwise integrated, at order 5 in steps that make 1e-12 of it.
+/// of spheres; otherwise by Taylor series [Jorba2005], to roundoff.
 [[nodiscard]] RouthImpact routh_impact(const Matrix3& W, const Vector3& u, double mu, double e);
 
 /// Whether sliding along d (unit, tangents) presses the bodies together the more the more they
