@@ -22,9 +22,11 @@ constexpr double settled = 1e-10;
 constexpr double accepted = 1e-3;
 /// What parts slower than this, in the same units, is held, and what slides slower sticks.
 constexpr double held = 1e-7;
+/// So often forces are looked for at most.
+constexpr int most_holds = 4;
 
-/// With nothing left along the normals of what is held.
-void hold_normals(const TurningState& state, TurningMode& mode) {
+/// Leaves nothing along the normals of what is held; returns the most that it changed, m/s.
+double hold_normals(const TurningState& state, TurningMode& mode) {
   TurningState from = state;
   std::vector<TouchNow> now;
   for (std::size_t i = 0; i < from.states.size(); ++i) {
@@ -38,6 +40,13 @@ void hold_normals(const TurningState& state, TurningMode& mode) {
     choice.does = choice.does == Does::opens ? Does::opens : Does::slides;
   }
   mode.velocities = held_velocities(from, now, choices).of;
+  double most = 0.0;
+  for (std::size_t i = 0; i < from.states.size(); ++i) {
+    const Twist& was = from.states[i].twist;
+    most = std::max(most, (mode.velocities[i].linear - was.linear).norm() +
+                              state.radius[i] * (mode.velocities[i].angular - was.angular).norm());
+  }
+  return most;
 }
 
 /// What a touch does that took this impulse and has these rates at the end of the step, along its
@@ -148,10 +157,8 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
   }
   // Nothing approaches at the start.
   velocities = sweeps.sweep(std::move(velocities), {}, {}, settled * fastest, false).velocities;
-  for (std::size_t i = 0; i < velocities.size(); ++i) {
-    mode.velocities.push_back({velocities[i].head<3>(), velocities[i].tail<3>()});
-    velocities[i].head<3>() += h * state.loads[i].linear;
-    velocities[i].tail<3>() += h * state.loads[i].angular;
+  for (const Vector6& v : velocities) {
+    mode.velocities.push_back({v.head<3>(), v.tail<3>()});
   }
   std::vector<Vector3> rates;
   for (std::size_t k = 0; k < touches.size(); ++k) {
@@ -163,15 +170,33 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
   }
   const double scale =
       forces.load() * h + fastest * std::numeric_limits<double>::epsilon() / settled;
-  auto swept = sweeps.sweep(velocities, rates, begin, settled * scale, true, last_resort, halvings);
-  mode.solves = swept.solves;
-  while (let_part(touches, swept, rates, held * scale, sweeps)) {
-    swept = sweeps.sweep(velocities, rates, begin, settled * scale, true, last_resort, halvings);
-    mode.solves += swept.solves;
-  }
-  if (!(swept.changed <= accepted * scale)) {
-    mode.refusal = "impulses of contacts were looked for touch by touch, and did not settle";
-    return mode;
+  ContactSweeps::Swept swept;
+  // What holding normals takes from velocities, forces do not: they are looked for again.
+  double taken = 0.0;
+  for (int round = 0; round == 0 || (round < most_holds && taken > held * scale); ++round) {
+    for (std::size_t i = 0; i < velocities.size(); ++i) {
+      const auto& [v, w] = mode.velocities[i];
+      velocities[i] << v + h * state.loads[i].linear, w + h * state.loads[i].angular;
+    }
+    const auto sweep = [&] {
+      swept = sweeps.sweep(velocities, rates, begin, settled * scale, true, last_resort, halvings);
+      mode.solves += swept.solves;
+    };
+    sweep();
+    while (let_part(touches, swept, rates, held * scale, sweeps)) {
+      sweep();
+    }
+    if (!(swept.changed <= accepted * scale)) {
+      mode.refusal = "impulses of contacts were looked for touch by touch, and did not settle";
+      return mode;
+    }
+    mode.choices.clear();
+    for (std::size_t k = 0; k < touches.size(); ++k) {
+      mode.choices.push_back(choice_of(state.touches[k], touches[k].normal, swept.impulse[k],
+                                       sweeps.rate(k, swept.velocities) + rates[k], held * scale));
+    }
+    taken = hold_normals(state, mode);
+    begin = swept.impulse;
   }
   share_alike(state.touches, touches, swept.impulse);
   mode.flies = true;
@@ -180,16 +205,13 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
     accelerations.push_back((Vector6() << load.linear, load.angular).finished());
   }
   for (std::size_t k = 0; k < touches.size(); ++k) {
-    mode.choices.push_back(choice_of(state.touches[k], touches[k].normal, swept.impulse[k],
-                                     sweeps.rate(k, swept.velocities) + rates[k], held * scale));
-    mode.flies = mode.flies && mode.choices.back().does == Does::opens;
+    mode.flies = mode.flies && mode.choices[k].does == Does::opens;
     mode.forces.force.emplace_back(swept.impulse[k] / h);
     sweeps.push(k, mode.forces.force.back(), accelerations);
   }
   for (const Vector6& a : accelerations) {
     mode.forces.accelerations.push_back({a.head<3>(), a.tail<3>()});
   }
-  hold_normals(state, mode);
   return mode;
 }
 

@@ -37,6 +37,10 @@ constexpr int few_cuts = 4;
 /// What slides back has stopped: faster than this part of `slow_slip`.
 constexpr double reversed = 1e-6;
 
+/// What is to stick at the end of a step slides where it is faster than this part of what loads
+/// give in the step.
+constexpr double still_slides = 1e-3;
+
 /// What is this part of its size beyond a rim is beyond it.
 constexpr double over_rim = 1e-12;
 
@@ -456,7 +460,7 @@ class Step {
       put_onto_joints(end, held);
     }
     const TurningForces there(end);
-    const std::vector<Twist> velocities = held_velocities(end, there.now(), mode_.choices).of;
+    const std::vector<Twist> velocities = held_velocities(end, there.now(), at_end(there.now())).of;
     for (std::size_t k = 0; k < free_.size(); ++k) {
       const std::size_t i = free_[k];
       BodyState& state = step_.states[i];
@@ -466,6 +470,24 @@ class Step {
       bend_to(bent[k], h, before_[k], state);
     }
     return bent;
+  }
+
+  /// What touches do at the end of the step. What is to stick at the end of an implicit step still
+  /// slides where the step was cut short: it is not stopped by an impulse.
+  [[nodiscard]] std::vector<FrictionChoice> at_end(const std::vector<TouchNow>& now) const {
+    std::vector<FrictionChoice> choices = mode_.choices;
+    if (!mode_.implicit || !(step_.duration < step_.stepped)) {
+      return choices;
+    }
+    const double least = still_slides * TurningForces(group_.start).load() * step_.duration;
+    for (std::size_t k = 0; k < choices.size(); ++k) {
+      const Vector3 v = now[k].velocity + group_.start.touches[k].belt;
+      const Vector3 u = v - now[k].normal * now[k].normal.dot(v);
+      if (choices[k].does == Does::sticks && u.norm() > least) {
+        choices[k].does = Does::slides;
+      }
+    }
+    return choices;
   }
 
   /// The same of what hangs on joints: what is done for gaps is off the joints only as much as its
@@ -589,7 +611,9 @@ class Step {
         of_belt[static_cast<Eigen::Index>(touch.pair)] += carried;
       }
       const bool slides = choices[k].does == Does::slides || choices[k].does == Does::begins;
-      if (slides && !choices[k].direction.isZero(0.0)) {
+      // What sticks at the end of an implicit step may have slid in it.
+      const bool may_slide = mode_.implicit && choices[k].does != Does::opens;
+      if (may_slide || (slides && !choices[k].direction.isZero(0.0))) {
         const Vector3 along = found.force[k] - now.normal * now.normal.dot(found.force[k]);
         rubbed = std::min(along.dot(now.velocity), 0.0);
       }

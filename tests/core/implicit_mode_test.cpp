@@ -84,6 +84,28 @@ TEST_CASE("implicit step: blocks slow down by mu g, and stop where they would tu
   CHECK(again.solves < mode.solves);
 }
 
+// What is held has nothing left along its normals when the step begins. Forces that took it away
+// once more would leave the blocks approaching the floor.
+TEST_CASE("implicit step: forces are those of the velocities that the step begins with",
+          "[implicit]") {
+  constexpr double h = 1e-3;
+  const double part = GENERATE(0.1, 0.5, 0.9);  // of what the loads make in the step
+  CAPTURE(part);
+  const TurningState state = blocks({{0.0, part * g * h, 0.0}, {0.0, 0.0, 0.0}}, 0.3);
+  const TurningMode mode = implicit_mode(state, h, {});
+  REQUIRE(mode.refusal.empty());
+  for (const std::size_t i : {1U, 2U}) {
+    CHECK(mode.velocities[i].linear.norm() <= 1e-12 * g * h);  // held: roundoff
+    // Sweeps settle to 1e-10 of what the loads do in a step.
+    CHECK(after(mode, i, h).linear.norm() <= 1e-8 * g * h);
+    double pressed = 0.0;
+    for (std::size_t k = 4 * (i - 1); k < 4 * i; ++k) {
+      pressed += mode.forces.force[k].y();
+    }
+    CHECK(pressed == Approx(2.0 * g).epsilon(1e-8));  // their weights
+  }
+}
+
 TEST_CASE("implicit step: impulses are within their cones, and take energy from what they meet",
           "[implicit]") {
   constexpr std::uint64_t seed = 20261124;

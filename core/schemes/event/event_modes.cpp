@@ -398,7 +398,9 @@ void EventModes::set_friction(const Gathered& found, const FlatMode& mode, Insta
                          (found.group.round[patch.b] != 0 && run_.model.rotates(b));
       changes.push_back({rolls ? EventKind::roll_begins : EventKind::stick_begins, a, b, grade});
     }
-    if (now == Slip::slides || moves_by_itself(a) || moves_by_itself(b)) {
+    // In an implicit step what sticks in the end may have slid.
+    const bool rubs = turning != nullptr && turning->mode.implicit;
+    if (now == Slip::slides || rubs || moves_by_itself(a) || moves_by_itself(b)) {
       const Vector3& force = mode.force[p];
       motions_.add_surface_force(
           run_.model.is_free(b) ? b : a, t,
