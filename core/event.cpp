@@ -53,6 +53,8 @@ std::string_view to_string(EventFlag flag) {
       return "";
     case EventFlag::set_valued:
       return "set-valued";
+    case EventFlag::plastic:
+      return "plastic";
     case EventFlag::painleve:
       return "painleve";
   }

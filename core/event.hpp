@@ -44,6 +44,9 @@ enum class EventFlag {
   /// The impact was handed on between bodies in touch, pair by pair, where they approached fastest:
   /// of such impacts several outcomes are possible [Halm2021], and the law's order chose this one.
   set_valued,
+  /// What such an impact came to in the end: impulses at all touches at once, after which nothing
+  /// approaches, and no restitution [Moreau1988]. What was left was slow, or nobody returns it.
+  plastic,
   /// Painleve's case: no forces go with the slide, which an impulse at no speed stops [Genot1999].
   painleve,
 };

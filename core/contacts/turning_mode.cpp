@@ -2,6 +2,7 @@
 
 #include "core/circular.hpp"
 #include "core/contacts/complementarity.hpp"
+#include "core/contacts/contact_sweeps.hpp"
 #include "core/contacts/routh_impact.hpp"
 
 #include <Eigen/Geometry>
@@ -380,6 +381,42 @@ HeldVelocities held_velocities(const TurningState& state, const std::vector<Touc
   return velocities;
 }
 
+namespace {
+
+/// The same by sweeps, which get on where many touches are redundant.
+std::optional<Parting> parting_by_sweeps(const TurningState& state) {
+  std::vector<SweptTouch> touches;
+  for (const Touch& touch : state.touches) {
+    const TouchNow now = look_at(touch, state.states[touch.a], state.states[touch.b]);
+    touches.push_back({touch.a, touch.b, now.normal, now.point_a, now.point_b, 0.0});
+  }
+  std::vector<ContactSweeps::Vector6> velocities;
+  double fastest = 0.0;
+  for (std::size_t i = 0; i < state.states.size(); ++i) {
+    const Twist& v = state.states[i].twist;
+    velocities.emplace_back();
+    velocities.back() << v.linear, v.angular;
+    fastest = std::max(fastest, v.linear.norm() + v.angular.norm() * state.radius[i]);
+  }
+  constexpr double settled = 1e-13;  // of the fastest; what has come as far as `accepted` will do
+  constexpr double accepted = 1e-10;
+  const auto swept = ContactSweeps(state.bodies, touches)
+                         .sweep(std::move(velocities), {}, {}, settled * fastest, false);
+  if (!(swept.changed <= accepted * fastest)) {
+    return std::nullopt;
+  }
+  Parting found;
+  for (const auto& v : swept.velocities) {
+    found.velocities.push_back({v.head<3>(), v.tail<3>()});
+  }
+  for (const Vector3& impulse : swept.impulse) {
+    found.struck.push_back(impulse.isZero(0.0) ? 0 : 1);
+  }
+  return found;
+}
+
+}  // namespace
+
 std::optional<Parting> parting(const TurningState& state) {
   ContactSystem all;
   all.bodies = state.bodies;
@@ -398,7 +435,7 @@ std::optional<Parting> parting(const TurningState& state) {
   }
   const Complementarity impulses = solve_complementarity(W, rates);
   if (!impulses.solved) {
-    return std::nullopt;
+    return state.joints == nullptr ? parting_by_sweeps(state) : std::nullopt;
   }
   all.push(impulses.x, found.velocities);
   found.driven = all.driven_work(impulses.x);

@@ -69,7 +69,8 @@ class Run:
         gap (m), point, normal (3,), and position, velocity, angular_velocity of both bodies before
         and after: a_before_velocity, ...; grade, how the time of a contact's beginning or end was
         found ("" of others), and bracket (s): it happens in [t, t + bracket]; NaN where that is
-        not known; flag, of an impact: "set-valued" or "painleve". The columns of events.csv."""
+        not known; flag, of an impact: "set-valued", "plastic" or "painleve". The columns of
+        events.csv."""
         return self._record.events
 
     @property

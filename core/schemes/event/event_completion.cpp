@@ -18,6 +18,8 @@ using Vector6 = ContactSweeps::Vector6;
 /// Of the fastest: sweeps that change less have settled; those that change more have not.
 constexpr double settled = 1e-13;
 constexpr double accepted = 1e-8;
+/// Of the speed of an impact, and of what is not returned: what is left is plastic.
+constexpr double nearly_handed_on = 0.1;
 /// What was pushed apart and comes together again and again gets nowhere: so often in a frame.
 constexpr int most_pushes = 1000;
 /// After so many the last impact of a collapse is taken for one of its end.
@@ -41,13 +43,11 @@ std::vector<SweptTouch> touches_of(const EventModes::GroupImpact& impact, const 
 }  // namespace
 
 /// Impacts that are without end between all that touches the seeds, whose states are at `now`, end
-/// in what contacts can do by pushing at once: nothing approaches any more, impulses are within the
-/// cones of friction, and what nobody presses parts as it will [Moreau1988]. How the last of the
-/// impacts would have divided what is left is not known: it is less than what they still hop. What
-/// took an impulse has been in contact, and is told so. Where nothing is left to push, what is in
-/// touch is settled. False, and nothing has changed, where neither is possible, or it was done too
-/// often. `last`: the impact that led here, which was told; after some pushes in a frame it is
-/// taken back.
+/// in what contacts can do by pushing at once. How the last of the impacts would have divided what
+/// is left is not known: it is less than what they still hop. What took an impulse has been in
+/// contact, and is told so. Where nothing is left to push, what is in touch is settled. False, and
+/// nothing has changed, where neither is possible, or it was done too often. `last`: the impact
+/// that led here, which was told; after some pushes in a frame it is taken back.
 bool EventContacts::end_by_pushing(std::span<const BodyIndex> seeds, double remaining, Instant t,
                                    const Event* last) {
   const double frame = std::floor(t.seconds / run_.mean_frame);
@@ -57,44 +57,24 @@ bool EventContacts::end_by_pushing(std::span<const BodyIndex> seeds, double rema
     return false;
   }
   last = pushed_ > few_pushes ? last : nullptr;
-  EventModes::GroupImpact impact = group_before(last, seeds, t);
-  if (!impact.refusal.empty() || impact.system.joints != nullptr || impact.system.rows.empty()) {
+  const EventModes::GroupImpact impact = group_before(last, seeds, t);
+  const std::optional<Pushes> pushes = pushes_among(impact);
+  if (!pushes) {
     return false;
   }
-  const bool belts = std::any_of(impact.bodies.begin(), impact.bodies.end(), [&](BodyIndex i) {
-    return !run_.model.entity(i).surface_velocity(run_.model.body(i), motions_.now(i)).isZero(0.0);
-  });
-  if (belts) {
-    return false;
-  }
-  const std::vector<SweptTouch> touches = touches_of(impact, run_.model);
-  std::vector<Vector6> before;
-  double fastest = 0.0;
-  for (std::size_t k = 0; k < impact.bodies.size(); ++k) {
-    before.push_back(stacked(impact.velocities[k]));
-    fastest = std::max(fastest, impact.velocities[k].linear.norm());
-  }
-  const ContactSweeps sweeps(impact.system.bodies, touches);
-  const auto swept = sweeps.sweep(before, {}, {}, settled * fastest, true);
-  run_.cost.contact_solves += swept.solves;
-  double pushed = 0.0;
-  for (std::size_t k = 0; k < before.size(); ++k) {
-    pushed = std::max(pushed, (swept.velocities[k] - before[k]).head<3>().norm());
-  }
-  const bool some = pushed > settled * fastest;
-  if (!some || !(swept.changed <= accepted * fastest)) {
-    return !some && settle_stalled(seeds, t);
+  if (!pushes->some || !pushes->settled) {
+    return !pushes->some && settle_stalled(seeds, t);
   }
   if (last != nullptr) {
     take_back(*last);
   }
-  const std::vector<BodyIndex> free = give(impact, swept.velocities, seeds, t);
-  book_pushes(impact, touches, swept, before);
+  const std::vector<BodyIndex> free = give(impact, pushes->swept.velocities, seeds, t);
+  book_pushes(impact, *pushes, EnergyLine::zeno_completion);
   std::vector<EventModes::Change> changes;
-  for (std::size_t r = 0; r < touches.size(); ++r) {
+  for (std::size_t r = 0; r < pushes->touches.size(); ++r) {
     const auto& [a, b] = impact.pairs[impact.pair_of_row[r]];
     const bool told = !changes.empty() && changes.back().a == a && changes.back().b == b;
-    if (!swept.impulse[r].isZero(0.0) && !told && !graph_.joins(a, b)) {
+    if (!pushes->swept.impulse[r].isZero(0.0) && !told && !graph_.joins(a, b)) {
       changes.push_back({EventKind::contact_begins, a, b, Grade::sampled, remaining});
       changes.push_back({EventKind::contact_ends, a, b, Grade::sampled});
     }
@@ -104,6 +84,74 @@ bool EventContacts::end_by_pushing(std::span<const BodyIndex> seeds, double rema
     modes_.tell(changes, t);
   }
   return true;
+}
+
+/// An impact that bodies in touch hand on among each other, of which they return only a part, or
+/// nothing, ends in what they can do by pushing at once; each pair that took an impulse is told.
+/// Returns the bodies that took part. None, and nothing has changed, where that is not possible, or
+/// where an end is not near: what approaches does so at this `part` of the speed of the impact,
+/// which is much beside what they do not return.
+std::vector<BodyIndex> EventContacts::hand_on_at_once(const Event& first,
+                                                      std::span<const BodyIndex> bodies,
+                                                      double part, Instant t) {
+  const EventModes::GroupImpact impact = modes_.impact_group(bodies, t, true, true);
+  if (impact.restitution.size() == 0) {
+    return {};
+  }
+  const double e = impact.restitution.maxCoeff();
+  if (e > 0.0 && !(part <= nearly_handed_on * (1.0 - e))) {
+    return {};
+  }
+  const std::optional<Pushes> pushes = pushes_among(impact);
+  if (!pushes || !pushes->some || !pushes->settled) {
+    return {};
+  }
+  std::vector<BodyIndex> free = give(impact, pushes->swept.velocities, bodies, t);
+  book_pushes(impact, *pushes, EnergyLine::restitution_loss);
+  std::vector<BodyState> before;
+  for (std::size_t k = 0; k < impact.bodies.size(); ++k) {
+    before.push_back(motions_.now(impact.bodies[k]));
+    before.back().twist = impact.velocities[k];
+  }
+  Eigen::VectorXd along(impact.restitution.size());
+  for (std::size_t r = 0; r < pushes->touches.size(); ++r) {
+    along[static_cast<Eigen::Index>(r)] = pushes->touches[r].normal.dot(pushes->swept.impulse[r]);
+  }
+  Event event = first;
+  event.flag = EventFlag::plastic;
+  tell_group(impact, along, before, event);
+  return free;
+}
+
+/// Impulses at all touches of a group at once, after which nothing approaches any more; they are
+/// within the cones of friction, and what nobody presses parts as it will [Moreau1988]. None where
+/// joints or belts take part, or nothing touches.
+std::optional<EventContacts::Pushes> EventContacts::pushes_among(
+    const EventModes::GroupImpact& impact) {
+  const bool belts = std::any_of(impact.bodies.begin(), impact.bodies.end(), [&](BodyIndex i) {
+    return !run_.model.entity(i).surface_velocity(run_.model.body(i), motions_.now(i)).isZero(0.0);
+  });
+  if (!impact.refusal.empty() || impact.system.joints != nullptr || impact.system.rows.empty() ||
+      belts) {
+    return std::nullopt;
+  }
+  Pushes pushes;
+  pushes.touches = touches_of(impact, run_.model);
+  double fastest = 0.0;
+  for (std::size_t k = 0; k < impact.bodies.size(); ++k) {
+    pushes.before.push_back(stacked(impact.velocities[k]));
+    fastest = std::max(fastest, impact.velocities[k].linear.norm());
+  }
+  const ContactSweeps sweeps(impact.system.bodies, pushes.touches);
+  pushes.swept = sweeps.sweep(pushes.before, {}, {}, settled * fastest, true);
+  run_.cost.contact_solves += pushes.swept.solves;
+  double pushed = 0.0;
+  for (std::size_t k = 0; k < pushes.before.size(); ++k) {
+    pushed = std::max(pushed, (pushes.swept.velocities[k] - pushes.before[k]).head<3>().norm());
+  }
+  pushes.some = pushed > settled * fastest;
+  pushes.settled = pushes.swept.changed <= accepted * fastest;
+  return pushes;
 }
 
 /// All that touches the seeds, as it was before the last impact of a collapse: contacts end there,
@@ -177,11 +225,11 @@ std::vector<BodyIndex> EventContacts::give(const EventModes::GroupImpact& impact
   return free;
 }
 
-/// What impulses did: p (u- + u+) / 2, along the normals and across, beside what driven bodies did.
-void EventContacts::book_pushes(const EventModes::GroupImpact& impact,
-                                std::span<const SweptTouch> touches,
-                                const ContactSweeps::Swept& swept,
-                                const std::vector<Vector6>& before) {
+/// What impulses did: p (u- + u+) / 2, along the normals (in this line of the ledger) and across,
+/// beside what driven bodies did.
+void EventContacts::book_pushes(const EventModes::GroupImpact& impact, const Pushes& pushes,
+                                EnergyLine normal) {
+  const auto& [touches, before, swept, some, settled] = pushes;
   for (std::size_t r = 0; r < touches.size(); ++r) {
     const SweptTouch& touch = touches[r];
     const Vector3& p = swept.impulse[r];
@@ -195,7 +243,7 @@ void EventContacts::book_pushes(const EventModes::GroupImpact& impact,
     };
     const Vector3 mean = 0.5 * (slip(before) + slip(swept.velocities));
     const Vector3 along = touch.normal * touch.normal.dot(p);
-    run_.ledger.add(EnergyLine::zeno_completion, along.dot(mean));
+    run_.ledger.add(normal, along.dot(mean));
     run_.ledger.add(EnergyLine::impact_friction, (p - along).dot(mean));
     for (const auto& [k, point, sign] :
          {std::tuple{touch.a, touch.point_a, 1.0}, {touch.b, touch.point_b, -1.0}}) {

@@ -104,7 +104,7 @@ void EventContacts::settle_anew(BodyIndex i, Instant t) {
   }
   const std::string why = unkept();
   // Where a corner is to strike at once, it does.
-  if (const auto worst = modes_.worst_approach(bodies, {}, true)) {
+  if (const auto worst = modes_.worst_approach(modes_.touching_pairs(bodies, {}, true))) {
     motions_.open_pair(worst->a, worst->b, t);
     Event event{.time = t, .kind = EventKind::impact, .a = worst->a, .b = worst->b};
     event.contact = worst->contact;
@@ -183,7 +183,7 @@ bool EventContacts::go_on_if(bool settled, std::span<const BodyIndex> seeds) {
 /// points; false where they do not.
 bool EventContacts::meet_elsewhere(BodyIndex a, BodyIndex b, Instant t) {
   const std::array<BodyPair, 1> both{BodyPair{a, b}};
-  const auto worst = modes_.worst_approach({}, both, true);
+  const auto worst = modes_.worst_approach(modes_.touching_pairs({}, both, true));
   if (worst) {
     Event event{.time = t, .kind = EventKind::impact, .a = a, .b = b};
     event.contact = worst->contact;

@@ -7,6 +7,7 @@
 #include "core/schemes/event/event_predictor.hpp"
 
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -111,9 +112,19 @@ class EventContacts {
   [[nodiscard]] std::vector<BodyIndex> give(const EventModes::GroupImpact& impact,
                                             const std::vector<ContactSweeps::Vector6>& velocities,
                                             std::span<const BodyIndex> seeds, Instant t);
-  void book_pushes(const EventModes::GroupImpact& impact, std::span<const SweptTouch> touches,
-                   const ContactSweeps::Swept& swept,
-                   const std::vector<ContactSweeps::Vector6>& before);
+  /// What contacts of a group can do by pushing.
+  struct Pushes {
+    std::vector<SweptTouch> touches;             ///< by row of the group
+    std::vector<ContactSweeps::Vector6> before;  ///< velocities, by body
+    ContactSweeps::Swept swept;
+    bool some = false;     ///< whether anything is pushed
+    bool settled = false;  ///< whether impulses were found
+  };
+  [[nodiscard]] std::optional<Pushes> pushes_among(const EventModes::GroupImpact& impact);
+  [[nodiscard]] std::vector<BodyIndex> hand_on_at_once(const Event& first,
+                                                       std::span<const BodyIndex> bodies,
+                                                       double part, Instant t);
+  void book_pushes(const EventModes::GroupImpact& impact, const Pushes& pushes, EnergyLine normal);
   void set_free(std::span<const BodyIndex> bodies, Instant t);
   [[nodiscard]] bool parts_all_over(BodyIndex a, BodyIndex b, double gap, double bracket) const;
   [[nodiscard]] Contact contact_at(BodyIndex a, BodyIndex b, Instant t, double bracket) const;

@@ -24,6 +24,8 @@ namespace {
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// How often an impact among bodies in touch is handed on at most, for each of them.
 constexpr std::size_t most_rounds = 1000;
+/// After so many rounds for each of them, what is left is looked for at once.
+constexpr std::size_t few_rounds = 4;
 
 /// The two that began an impact strike where they came together. What is in touch at one point of a
 /// corner may part at another, whose normal is not the same.
@@ -496,8 +498,12 @@ void EventContacts::tell_group(const EventModes::GroupImpact& impact,
   const double resolved = 64.0 * epsilon * fastest;
   const auto tell = [&](std::size_t p) {
     const auto [a, b] = impact.pairs[p];
-    Event event{
-        .time = first.time, .kind = EventKind::impact, .bracket = first.bracket, .a = a, .b = b};
+    Event event{.time = first.time,
+                .kind = EventKind::impact,
+                .flag = first.flag,
+                .bracket = first.bracket,
+                .a = a,
+                .b = b};
     struct Centre {
       double total = 0.0;
       Vector3 sum = Vector3::Zero();
@@ -562,15 +568,28 @@ void EventContacts::tell_group(const EventModes::GroupImpact& impact,
 }
 
 /// Hands an impact on through the patches of bodies in touch: pair by pair, always where they
-/// approach fastest, until none approaches. Then the rest of the group is settled.
+/// approach fastest, until none approaches, or what is left can be had at once. Then the rest of
+/// the group is settled.
 void EventContacts::hand_on(const Event& first, double approach, std::vector<BodyIndex> bodies,
                             Instant t) {
   const std::array<BodyPair, 1> struck{BodyPair{first.a, first.b}};
+  const std::vector<EventModes::TouchingPair> pairs = modes_.touching_pairs(bodies, struck);
   const std::size_t most = most_rounds * bodies.size();
+  std::size_t at_once = few_rounds * bodies.size();  // when that is tried next
   for (std::size_t round = 0; run_.law.info().needs_contact; ++round) {
-    const auto worst = modes_.worst_approach(bodies, struck);
+    const auto worst = modes_.worst_approach(pairs);
     if (!worst) {
       break;
+    }
+    if (round == at_once) {
+      // The longer it lasts, the more of it is left to the impact that ends it.
+      const double tried = static_cast<double>(round / (few_rounds * bodies.size()));
+      const double part = worst->speed / approach / tried;
+      if (std::vector<BodyIndex> all = hand_on_at_once(first, bodies, part, t); !all.empty()) {
+        bodies = std::move(all);
+        break;
+      }
+      at_once *= 2;
     }
     if (round == most) {
       if (end_by_pushing(bodies, 0.0, t)) {

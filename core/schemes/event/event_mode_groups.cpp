@@ -355,7 +355,7 @@ void EventModes::still_hold(ContactGroup& group, GroupImpact& impact) const {
 }
 
 EventModes::GroupImpact EventModes::impact_group(std::span<const BodyIndex> seeds, Instant t,
-                                                 bool all) {
+                                                 bool all, bool parting) {
   Gathered found = gather(seeds, t, {.impact = true, .held_only = !all});
   GroupImpact impact;
   if (!found.mechanisms.empty()) {
@@ -377,7 +377,8 @@ EventModes::GroupImpact EventModes::impact_group(std::span<const BodyIndex> seed
     for (std::size_t k = 0; k < patch.manifold.size; ++k) {
       const ContactManifold::Point& point = patch.manifold.points[k];
       impact.system.add(patch.a, patch.b, point.position, patch.manifold.normal);
-      if (impact.system.rate(impact.system.rows.back(), impact.velocities) > patch.rest_speed) {
+      if (!parting &&
+          impact.system.rate(impact.system.rows.back(), impact.velocities) > patch.rest_speed) {
         impact.system.rows.pop_back();
         continue;
       }
@@ -399,16 +400,19 @@ bool EventModes::stays(BodyIndex a, BodyIndex b, const Contact& contact) const {
 
 std::optional<EventModes::Approach> EventModes::landing(BodyIndex a, BodyIndex b) const {
   const Patch* const patch = graph_.find(a, b);
-  return patch != nullptr && patch->turns ? fastest_points(a, b) : std::nullopt;
+  return patch != nullptr && patch->turns ? fastest_points(a, b, manifold(a, b)) : std::nullopt;
+}
+
+ContactManifold EventModes::manifold(BodyIndex a, BodyIndex b) const {
+  return run_.detector.manifold(run_.model.shape(a), motions_.now(a).pose, run_.model.shape(b),
+                                motions_.now(b).pose, predictor_.touching_gap(a, b));
 }
 
 /// The middle of the points that approach fastest.
-std::optional<EventModes::Approach> EventModes::fastest_points(BodyIndex a, BodyIndex b) const {
+std::optional<EventModes::Approach> EventModes::fastest_points(BodyIndex a, BodyIndex b,
+                                                               const ContactManifold& m) const {
   const BodyState& at_a = motions_.now(a);
   const BodyState& at_b = motions_.now(b);
-  const ContactManifold m =
-      run_.detector.manifold(run_.model.shape(a), at_a.pose, run_.model.shape(b), at_b.pose,
-                             predictor_.touching_gap(a, b));
   const auto contact = [&](std::size_t k) {
     return Contact{m.points[k].position, m.normal, m.points[k].gap};
   };
@@ -433,38 +437,28 @@ std::optional<EventModes::Approach> EventModes::fastest_points(BodyIndex a, Body
   return Approach{a, b, middle, -fastest};
 }
 
-std::optional<EventModes::Approach> EventModes::approach(BodyIndex a, BodyIndex b,
-                                                         bool corners_too) const {
-  if (const Patch* const patch = graph_.find(a, b); patch != nullptr && patch->turns) {
-    const std::optional<Approach> found = landing(a, b);
-    const double rest = rest_speed(a, b, motions_.now(a), motions_.now(b), {});
-    return found && found->speed > rest ? found : std::nullopt;
-  }
+std::optional<EventModes::Approach> EventModes::approach(const TouchingPair& pair) const {
+  const auto& [a, b, manifold, nearest, turns, corners_too] = pair;
   const BodyState& at_a = motions_.now(a);
   const BodyState& at_b = motions_.now(b);
-  const Shape& shape_a = run_.model.shape(a);
-  const Shape& shape_b = run_.model.shape(b);
   const double slow = rest_speed(a, b, at_a, at_b, {});
-  const ContactManifold manifold =
-      run_.detector.manifold(shape_a, at_a.pose, shape_b, at_b.pose, predictor_.touching_gap(a, b));
-  if (manifold.size == 0) {
-    return std::nullopt;
+  if (turns) {
+    const std::optional<Approach> found = fastest_points(a, b, manifold);
+    return found && found->speed > slow ? found : std::nullopt;
   }
-  const Overlap o = run_.detector.overlap(shape_a, at_a.pose, shape_b, at_b.pose);
-  Contact contact{o.point, o.normal, o.gap};
-  double rate = normal_velocity(contact, at_a, at_b);
+  const double rate = normal_velocity(nearest, at_a, at_b);
   if (rate >= -slow && corners_too) {
-    if (const std::optional<Approach> corners = fastest_points(a, b);
+    if (const std::optional<Approach> corners = fastest_points(a, b, manifold);
         corners && -corners->speed < std::min(rate, -slow)) {
       return corners;
     }
   }
-  return rate < -slow ? std::optional(Approach{a, b, contact, -rate}) : std::nullopt;
+  return rate < -slow ? std::optional(Approach{a, b, nearest, -rate}) : std::nullopt;
 }
 
-std::optional<EventModes::Approach> EventModes::worst_approach(std::span<const BodyIndex> bodies,
-                                                               std::span<const BodyPair> others,
-                                                               bool corners_too) const {
+std::vector<EventModes::TouchingPair> EventModes::touching_pairs(std::span<const BodyIndex> bodies,
+                                                                 std::span<const BodyPair> others,
+                                                                 bool corners_too) const {
   std::vector<BodyPair> pairs(others.begin(), others.end());
   for (const BodyIndex i : bodies) {
     for (const BodyIndex j : graph_.partners(i)) {
@@ -477,10 +471,30 @@ std::optional<EventModes::Approach> EventModes::worst_approach(std::span<const B
   };
   std::sort(pairs.begin(), pairs.end(), by_name);
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  std::optional<Approach> worst;
+  std::vector<TouchingPair> touching;
   for (const auto& [a, b] : pairs) {
-    const std::optional<Approach> found =
-        approach(a, b, corners_too || has_turned(std::array{a, b}));
+    TouchingPair pair{a, b, manifold(a, b)};
+    if (pair.manifold.size == 0) {
+      continue;
+    }
+    const Patch* const patch = graph_.find(a, b);
+    pair.turns = patch != nullptr && patch->turns;
+    pair.corners_too = corners_too || has_turned(std::array{a, b});
+    if (!pair.turns) {
+      const Overlap o = run_.detector.overlap(run_.model.shape(a), motions_.now(a).pose,
+                                              run_.model.shape(b), motions_.now(b).pose);
+      pair.nearest = {o.point, o.normal, o.gap};
+    }
+    touching.push_back(pair);
+  }
+  return touching;
+}
+
+std::optional<EventModes::Approach> EventModes::worst_approach(
+    std::span<const TouchingPair> pairs) const {
+  std::optional<Approach> worst;
+  for (const TouchingPair& pair : pairs) {
+    const std::optional<Approach> found = approach(pair);
     if (found && (!worst || found->speed > worst->speed)) {
       worst = found;
     }

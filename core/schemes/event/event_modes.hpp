@@ -87,13 +87,25 @@ class EventModes {
   [[nodiscard]] std::optional<Approach> landing(BodyIndex a, BodyIndex b) const;
   /// Whether a contact has no speed along its normal that is worth a hop.
   [[nodiscard]] bool stays(BodyIndex a, BodyIndex b, const Contact& contact) const;
-  /// The pair that approaches fastest among `others` and the pairs in touch of `bodies`, whose
-  /// states are at `now`: at the centroid of its patch, or at a point of it if that does not
-  /// approach. Nothing if all are slower than they may be at rest. `corners_too`: a pair counts
-  /// also if only a point of its patch approaches; so it does always once its bodies have turned.
-  [[nodiscard]] std::optional<Approach> worst_approach(std::span<const BodyIndex> bodies,
-                                                       std::span<const BodyPair> others,
-                                                       bool corners_too = false) const;
+  /// A pair in touch, as it lies at an instant.
+  struct TouchingPair {
+    BodyIndex a = 0;
+    BodyIndex b = 0;
+    ContactManifold manifold = {};
+    Contact nearest = {};      ///< at the centroid of the patch; unless it turns
+    bool turns = false;        ///< as its patch does
+    bool corners_too = false;  ///< it approaches also if only a point of its patch does
+  };
+  /// `others` and the pairs in touch of `bodies`, whose states are at `now`, as long as these do
+  /// not move. `corners_too`: as in `TouchingPair`; so it is always once the bodies of a pair have
+  /// turned.
+  [[nodiscard]] std::vector<TouchingPair> touching_pairs(std::span<const BodyIndex> bodies,
+                                                         std::span<const BodyPair> others,
+                                                         bool corners_too = false) const;
+  /// The pair that approaches fastest, with the velocities that bodies have `now`: at the centroid
+  /// of its patch, or at a point of it if that does not approach. Nothing if all are slower than
+  /// they may be at rest.
+  [[nodiscard]] std::optional<Approach> worst_approach(std::span<const TouchingPair> pairs) const;
   /// A contact that begins or ends, to be told when its bodies have their new motions.
   struct Change {
     EventKind kind = EventKind::contact_ends;
@@ -115,7 +127,9 @@ class EventModes {
     std::string refusal;       ///< why it is none
   };
   /// What these bodies, whose states are at `now`, are in touch with: all of it, or what is held.
-  [[nodiscard]] GroupImpact impact_group(std::span<const BodyIndex> seeds, Instant t, bool all);
+  /// Rows that part are left out, unless they are asked for.
+  [[nodiscard]] GroupImpact impact_group(std::span<const BodyIndex> seeds, Instant t, bool all,
+                                         bool parting = false);
 
   /// A pair is in touch from now on, its bodies at rest; its bounces will have died down after
   /// `remaining`, s.
@@ -150,8 +164,10 @@ class EventModes {
   [[nodiscard]] bool rattles(BodyIndex i) const;
   [[nodiscard]] double rest_speed(BodyIndex a, BodyIndex b, const BodyState& at_a,
                                   const BodyState& at_b, const SettleOptions& options) const;
-  [[nodiscard]] std::optional<Approach> approach(BodyIndex a, BodyIndex b, bool corners_too) const;
-  [[nodiscard]] std::optional<Approach> fastest_points(BodyIndex a, BodyIndex b) const;
+  [[nodiscard]] ContactManifold manifold(BodyIndex a, BodyIndex b) const;
+  [[nodiscard]] std::optional<Approach> approach(const TouchingPair& pair) const;
+  [[nodiscard]] std::optional<Approach> fastest_points(BodyIndex a, BodyIndex b,
+                                                       const ContactManifold& m) const;
   [[nodiscard]] Twist load(BodyIndex i, const BodyState& state) const;
   /// One body on one surface, along a motion that is no parabola.
   struct GivenMotion {
