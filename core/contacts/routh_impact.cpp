@@ -28,9 +28,9 @@ constexpr double hardly_moves = 1e-6;
 /// Part of what an impulse does along the surface by which its direction turns in equilibrium.
 constexpr double settled = 1e-14;
 /// Of the series in which sliding turns, and how much of its radius of convergence is used: what is
-/// left out is 0.1^17.
+/// left out is 0.05^17.
 constexpr std::size_t order = 16;
-constexpr double part_of_radius = 0.1;
+constexpr double part_of_radius = 0.05;
 constexpr int looks = 8;  ///< within such a step, whether the approach has ended
 constexpr int most_phases = 16;
 constexpr int most_steps = 100000;
@@ -301,7 +301,7 @@ class Routh {
 
   /// Follows sliding that turns, by a variable x with dp = |u_t| dx: in x, u_t decays without being
   /// singular anywhere, at a rate of at most |W_tn| + mu |W_tt|. Its Taylor series
-  /// [Jorba2005] is summed up to a tenth of its radius.
+  /// [Jorba2005] is summed up to a twentieth of its radius.
   void turn() {
     const double left = e_ * e_ * course_.most;
     const double slowest = 1.0 / (W_.block<2, 1>(1, 0).norm() + mu_ * W_.block<2, 2>(1, 1).norm());

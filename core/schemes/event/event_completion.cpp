@@ -88,14 +88,18 @@ bool EventContacts::end_by_pushing(std::span<const BodyIndex> seeds, double rema
 
 /// An impact that bodies in touch hand on among each other, of which they return only a part, or
 /// nothing, ends in what they can do by pushing at once; each pair that took an impulse is told.
-/// Returns the bodies that took part. None, and nothing has changed, where that is not possible, or
-/// where an end is not near: what approaches does so at this `part` of the speed of the impact,
-/// which is much beside what they do not return.
+/// Returns the bodies that took part. None, and nothing has changed, where that is not possible,
+/// where something is driven, which may squeeze others, or where an end is not near: what
+/// approaches does so at this `part` of the speed of the impact, which is much beside what they do
+/// not return.
 std::vector<BodyIndex> EventContacts::hand_on_at_once(const Event& first,
                                                       std::span<const BodyIndex> bodies,
                                                       double part, Instant t) {
   const EventModes::GroupImpact impact = modes_.impact_group(bodies, t, true, true);
-  if (impact.restitution.size() == 0) {
+  const bool driven = std::any_of(impact.bodies.begin(), impact.bodies.end(), [&](BodyIndex i) {
+    return run_.model.mobility(i) == Mobility::driven;
+  });
+  if (driven || impact.restitution.size() == 0) {
     return {};
   }
   const double e = impact.restitution.maxCoeff();

@@ -587,7 +587,8 @@ void EventContacts::hand_on(const Event& first, double approach, std::vector<Bod
       const double part = worst->speed / approach / tried;
       if (std::vector<BodyIndex> all = hand_on_at_once(first, bodies, part, t); !all.empty()) {
         bodies = std::move(all);
-        break;
+        at_once = round + few_rounds * bodies.size();
+        continue;
       }
       at_once *= 2;
     }

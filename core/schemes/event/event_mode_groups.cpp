@@ -356,7 +356,7 @@ void EventModes::still_hold(ContactGroup& group, GroupImpact& impact) const {
 
 EventModes::GroupImpact EventModes::impact_group(std::span<const BodyIndex> seeds, Instant t,
                                                  bool all, bool parting) {
-  Gathered found = gather(seeds, t, {.impact = true, .held_only = !all});
+  Gathered found = gather(seeds, t, {.impact = true, .held_only = !all, .near = parting});
   GroupImpact impact;
   if (!found.mechanisms.empty()) {
     impact.driven = put_velocities_onto_joints(found.mechanisms, t, found.states);

@@ -127,7 +127,7 @@ class EventModes {
     std::string refusal;       ///< why it is none
   };
   /// What these bodies, whose states are at `now`, are in touch with: all of it, or what is held.
-  /// Rows that part are left out, unless they are asked for.
+  /// Pairs and rows that part are left out, unless they are asked for.
   [[nodiscard]] GroupImpact impact_group(std::span<const BodyIndex> seeds, Instant t, bool all,
                                          bool parting = false);
 
