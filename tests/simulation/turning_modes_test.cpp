@@ -737,7 +737,8 @@ TEST_CASE("turning: what completes an accumulation pushes, and is small", "[turn
       // Velocities below which nothing hops over 1e-10 of a cube are 2e-5 m/s, of 3.5 kg.
       CHECK(upward(sim, scene, t, true) - upward(sim, scene, t, false) - told >= -1e-4);
     }
-    // Such a hop of one cube has 2e-10 J.
-    CHECK(sim.result.ledger.line(EnergyLine::zeno_completion) >= -1e-8);
+    // Such a hop of one cube has 2e-10 J; the last ones of a collapse, which go on at up to
+    // 4e-4 m/s, have 1e-7 J each. Impacts take 10 J.
+    CHECK(sim.result.ledger.line(EnergyLine::zeno_completion) >= -5e-7);
   }
 }

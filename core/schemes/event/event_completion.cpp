@@ -40,6 +40,28 @@ std::vector<SweptTouch> touches_of(const EventModes::GroupImpact& impact, const 
   return touches;
 }
 
+/// Leaves out of an impact the touches of other pairs than these: what only meets at this instant
+/// has an impact of its own.
+template <typename Takes>
+void keep_pairs(EventModes::GroupImpact& impact, const Takes& takes) {
+  std::size_t kept = 0;
+  for (std::size_t r = 0; r < impact.system.rows.size(); ++r) {
+    if (!takes(impact.pairs[impact.pair_of_row[r]])) {
+      continue;
+    }
+    impact.system.rows[kept] = impact.system.rows[r];
+    impact.pair_of_row[kept] = impact.pair_of_row[r];
+    impact.gaps[kept] = impact.gaps[r];
+    impact.restitution[static_cast<Eigen::Index>(kept)] =
+        impact.restitution[static_cast<Eigen::Index>(r)];
+    ++kept;
+  }
+  impact.system.rows.resize(kept);
+  impact.pair_of_row.resize(kept);
+  impact.gaps.resize(kept);
+  impact.restitution.conservativeResize(static_cast<Eigen::Index>(kept));
+}
+
 }  // namespace
 
 /// Impacts that are without end between all that touches the seeds, whose states are at `now`, end
@@ -95,7 +117,11 @@ bool EventContacts::end_by_pushing(std::span<const BodyIndex> seeds, double rema
 std::vector<BodyIndex> EventContacts::hand_on_at_once(const Event& first,
                                                       std::span<const BodyIndex> bodies,
                                                       double part, Instant t) {
-  const EventModes::GroupImpact impact = modes_.impact_group(bodies, t, true, true);
+  EventModes::GroupImpact impact = modes_.impact_group(bodies, t, true, true);
+  keep_pairs(impact, [&](const BodyPair& pair) {
+    return pair == BodyPair{first.a, first.b} || pair == BodyPair{first.b, first.a} ||
+           graph_.joins(pair.first, pair.second);
+  });
   const bool driven = std::any_of(impact.bodies.begin(), impact.bodies.end(), [&](BodyIndex i) {
     return run_.model.mobility(i) == Mobility::driven;
   });
