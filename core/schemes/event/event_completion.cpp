@@ -259,9 +259,9 @@ std::vector<BodyIndex> EventContacts::give(const EventModes::GroupImpact& impact
 /// beside what driven bodies did.
 void EventContacts::book_pushes(const EventModes::GroupImpact& impact, const Pushes& pushes,
                                 EnergyLine normal) {
-  const auto& [touches, before, swept, some, settled] = pushes;
-  for (std::size_t r = 0; r < touches.size(); ++r) {
-    const SweptTouch& touch = touches[r];
+  const ContactSweeps::Swept& swept = pushes.swept;
+  for (std::size_t r = 0; r < pushes.touches.size(); ++r) {
+    const SweptTouch& touch = pushes.touches[r];
     const Vector3& p = swept.impulse[r];
     const auto at = [&](const Vector6& v, std::size_t k, const Vector3& point) {
       const Vector3 arm = point - impact.system.bodies[k].position;
@@ -271,14 +271,14 @@ void EventContacts::book_pushes(const EventModes::GroupImpact& impact, const Pus
       return Vector3(at(v[touch.b], touch.b, touch.point_b) -
                      at(v[touch.a], touch.a, touch.point_a));
     };
-    const Vector3 mean = 0.5 * (slip(before) + slip(swept.velocities));
+    const Vector3 mean = 0.5 * (slip(pushes.before) + slip(swept.velocities));
     const Vector3 along = touch.normal * touch.normal.dot(p);
     run_.ledger.add(normal, along.dot(mean));
     run_.ledger.add(EnergyLine::impact_friction, (p - along).dot(mean));
     for (const auto& [k, point, sign] :
          {std::tuple{touch.a, touch.point_a, 1.0}, {touch.b, touch.point_b, -1.0}}) {
       if (run_.model.mobility(impact.bodies[k]) == Mobility::driven) {
-        run_.ledger.add(EnergyLine::driven_work, sign * p.dot(at(before[k], k, point)));
+        run_.ledger.add(EnergyLine::driven_work, sign * p.dot(at(pushes.before[k], k, point)));
       }
     }
   }
