@@ -246,7 +246,7 @@ class Routh {
     failed_ = true;
   }
 
-  /// u, p, and the work of both, as polynomials in x, see `turn`.
+  /// u, p, and the work of both, as polynomials in x over its unit, see `turn`.
   struct Series {
     std::array<std::array<double, order + 1>, 8> of;
     double radius = infinity;  ///< about that of convergence
@@ -262,7 +262,7 @@ class Routh {
 
   /// The Taylor series of the course from where it is: its products and the root of one are
   /// multiplied out, coefficient by coefficient.
-  [[nodiscard]] Series series() const {
+  [[nodiscard]] Series series(double unit) const {
     Series y;
     const auto put = [&](std::size_t k, const Vector3& u, const Vector3& p, double work,
                          double rubbed) {
@@ -289,7 +289,7 @@ class Routh {
         given += u[i] * speed[k - i];
       }
       const Vector3 p(speed[k], -mu_ * t1[k], -mu_ * t2[k]);
-      const double part = 1.0 / static_cast<double>(k + 1);
+      const double part = unit / static_cast<double>(k + 1);
       put(k + 1, part * (W_ * p), part * p, part * given, -part * mu_ * square);
     }
     for (const std::size_t k : {order - 1, order}) {
@@ -301,16 +301,19 @@ class Routh {
 
   /// Follows sliding that turns, by a variable x with dp = |u_t| dx: in x, u_t decays without being
   /// singular anywhere, at a rate of at most |W_tn| + mu |W_tt|. Its Taylor series
-  /// [Jorba2005] is summed up to a twentieth of its radius.
+  /// [Jorba2005] is summed up to a twentieth of its radius. Its unit of x, a power of two, is about
+  /// the inverse of that rate: coefficients neither overflow nor vanish, however rough or light the
+  /// bodies are.
   void turn() {
     const double left = e_ * e_ * course_.most;
     const double slowest = 1.0 / (W_.block<2, 1>(1, 0).norm() + mu_ * W_.block<2, 2>(1, 1).norm());
+    const double unit = std::ldexp(1.0, std::ilogb(slowest));
     for (int step = 0; step < most_steps; ++step) {
-      const Series y = series();
+      const Series y = series(unit);
       const auto ends = [&](double x) {
         return course_.springs_back ? y.at(6, x) + course_.most >= left : y.at(0, x) >= 0.0;
       };
-      double x = std::min(part_of_radius * y.radius, slowest);
+      double x = std::min(part_of_radius * y.radius, slowest / unit);
       bool end = false;
       for (int k = 1; k <= looks && !end; ++k) {
         double low = x * (k - 1) / looks;

@@ -7,6 +7,7 @@
 #include "tests/catch.hpp"
 
 #include <cmath>
+#include <utility>
 
 using namespace kairos;
 
@@ -120,6 +121,38 @@ TEST_CASE("routh: sliding that turns, against many small impulses", "[routh]") {
   const double fine = (at_end(2000) - impact.velocity).norm();
   CHECK(fine <= 1e-6);
   CHECK(coarse / fine == Approx(4.0).epsilon(0.05));  // of order 2, to the same limit
+}
+
+// Powers of two in masses and speeds scale impulses, to the last bit, and friction may be as large
+// as it likes: no coefficient of a series overflows or vanishes.
+TEST_CASE("routh: sliding that turns, of what is light or heavy, smooth or rough", "[routh]") {
+  constexpr std::uint64_t seed = 20261130;
+  CAPTURE(seed);
+  Random random(seed);
+  for (int trial = 0; trial < 100; ++trial) {
+    Matrix3 levers;
+    for (int k = 0; k < 3; ++k) {
+      levers.col(k) = random.direction();
+    }
+    const Matrix3 W = Matrix3::Identity() + levers.transpose() * levers;
+    Vector3 u = random.direction();
+    u[0] = -std::abs(u[0]);
+    const double e = random.uniform();
+    for (const double mu : {1e-30, 0.5, 1e6, 1e12, 1e30}) {
+      CAPTURE(trial, mu);
+      const RouthImpact one = routh_impact(W, u, mu, e);
+      REQUIRE(one.solved);
+      CHECK(one.impulse.allFinite());
+      for (const auto& [light, fast] : {std::pair{120, -40}, {-120, 40}, {100, 60}}) {
+        const double f = std::ldexp(1.0, light);
+        const double v = std::ldexp(1.0, fast);
+        const RouthImpact other = routh_impact(f * W, v * u, mu, e);
+        CHECK(other.solved);
+        CHECK(other.impulse == Vector3(v / f * one.impulse));
+        CHECK(other.velocity == Vector3(v * one.velocity));
+      }
+    }
+  }
 }
 
 TEST_CASE("routh: a point that joints let move along one line", "[routh]") {

@@ -581,17 +581,6 @@ void EventContacts::hand_on(const Event& first, double approach, std::vector<Bod
     if (!worst) {
       break;
     }
-    if (round == at_once) {
-      // The longer it lasts, the more of it is left to the impact that ends it.
-      const double tried = static_cast<double>(round / (few_rounds * bodies.size()));
-      const double part = worst->speed / approach / tried;
-      if (std::vector<BodyIndex> all = hand_on_at_once(first, bodies, part, t); !all.empty()) {
-        bodies = std::move(all);
-        at_once = round + few_rounds * bodies.size();
-        continue;
-      }
-      at_once *= 2;
-    }
     if (round == most) {
       if (end_by_pushing(bodies, 0.0, t)) {
         return;
@@ -605,6 +594,17 @@ void EventContacts::hand_on(const Event& first, double approach, std::vector<Bod
                  : fmt::format("accumulation: an impact of {} is handed on between "
                                "bodies in touch more than {} times; {}",
                                run_.names(first.a, first.b), most, lasting_contact_advice));
+    }
+    if (round == at_once) {
+      // The longer it lasts, the more of it is left to the impact that ends it.
+      const double tried = static_cast<double>(round / (few_rounds * bodies.size()));
+      const double part = worst->speed / approach / tried;
+      if (std::vector<BodyIndex> all = hand_on_at_once(first, bodies, part, t); !all.empty()) {
+        bodies = std::move(all);
+        at_once = round + few_rounds * bodies.size();
+        continue;
+      }
+      at_once *= 2;
     }
     Event event{.time = t,
                 .kind = EventKind::impact,
