@@ -460,7 +460,8 @@ class Step {
       put_onto_joints(end, held);
     }
     const TurningForces there(end);
-    const std::vector<Twist> velocities = held_velocities(end, there.now(), at_end(there.now())).of;
+    step_.choices = at_end(there.now());
+    const std::vector<Twist> velocities = held_velocities(end, there.now(), step_.choices).of;
     for (std::size_t k = 0; k < free_.size(); ++k) {
       const std::size_t i = free_[k];
       BodyState& state = step_.states[i];

@@ -56,9 +56,12 @@ struct TurningStep {
   double stepped = 0.0;   ///< s; how long it was before it was cut off where something ends
   bool halved = false;    ///< what was asked for was too long
   TurningEnd end = TurningEnd::step;
-  std::size_t pair = 0;               ///< that strikes
-  std::vector<Motion> motions;        ///< by place; of free bodies only
-  std::vector<BodyState> states;      ///< by place, at the end
+  std::size_t pair = 0;           ///< that strikes
+  std::vector<Motion> motions;    ///< by place; of free bodies only
+  std::vector<BodyState> states;  ///< by place, at the end
+  /// By touch: what it does. As in the mode, but what is to stick at the end of an implicit step
+  /// slides where the step was cut off before it stops.
+  std::vector<FrictionChoice> choices;
   std::vector<Polynomial<3>> worked;  ///< by place: x, work of contact forces on the body, J
   /// By pair: x, work of friction that slides, J, <= 0; y, what belts do, J.
   std::vector<Polynomial<3>> rubbed;

@@ -463,8 +463,8 @@ void EventModes::carry_on(const Gathered& found, const Turning& turning, Instant
   mode.rate = hops(found);
   mode.slip.assign(n, Slip::none);
   mode.force.assign(n, Vector3::Zero());
-  for (std::size_t k = 0; k < turning.mode.choices.size(); ++k) {
-    const FrictionChoice& c = turning.mode.choices[k];
+  for (std::size_t k = 0; k < turning.step.choices.size(); ++k) {
+    const FrictionChoice& c = turning.step.choices[k];
     const Touch& touch = turning.group.start.touches[k];
     using Does = FrictionChoice::Does;
     const std::size_t p = touch.pair;

@@ -85,7 +85,7 @@ bool judge_scene(const std::string& name, const Scene& scene, const Arguments& a
 
 constexpr const char* usage =
     "usage: judge_contact SCENE... [--times N] [--duration S] [--seed N] [--at S] [--friction F] "
-    "[--told]\n"
+    "[--without-forces] [--told]\n"
     "       judge_contact --random rough|touching --seed N [--first N] [--count N] ...\n"
     "       judge_contact --self-check\n";
 
@@ -112,6 +112,8 @@ int judge_all(int argc, char** argv) {
       return judge::self_check() == 0 ? 0 : 1;
     } else if (key == "--at") {
       args.look.only_at = std::stod(value());
+    } else if (key == "--without-forces") {
+      args.look.forces = false;
     } else if (key == "--told") {
       args.told = true;
     } else if (key == "--help") {

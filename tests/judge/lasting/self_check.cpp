@@ -2,6 +2,7 @@
 
 #include "core/reading/scene_reader.hpp"
 #include "tests/judge/lasting/cone_fit.hpp"
+#include "tests/judge/lasting/touching.hpp"
 #include "tests/judge/lasting/verdict.hpp"
 
 #include <Eigen/Geometry>
@@ -175,6 +176,21 @@ void check_fit(Check& check) {
   check.equals("a load beyond them", fit(sets, load).left.norm(), std::sqrt(0.5L), 1e-15L);
 }
 
+/// Two edges at an angle of 1e-7 pass by each other at 1e-12 m of both coordinates: along the
+/// normals of all faces the boxes overlap by 9e-9 m.
+void check_edges(Check& check) {
+  const double h = 0.125;
+  const Real apart = 1e-12L;
+  const Vector diagonal = Vector(1, 1, 0).normalized();
+  const Moment a = moment_of(Motion::at_rest(Instant{}, Pose{}), 0);
+  Moment b = a;
+  b.position = Vector(2 * h + apart, 2 * h + apart, 0);
+  b.turned = Eigen::AngleAxis<Real>(1e-7L, diagonal).toRotationMatrix();
+  const Box cube{Vector3(h, h, h)};
+  check.equals("edges that pass by each other", nearness(cube, a, cube, b, 0).gap,
+               std::sqrt(Real(2)) * apart, 1e-18L);
+}
+
 void check_motions(Check& check) {
   for (const Case& c :
        {sliding_box(), sliding_box(0.0), resting_box(), sliding_ball(), rolling_ball()}) {
@@ -230,6 +246,7 @@ void check_motions(Check& check) {
 int self_check() {
   Check check;
   check_fit(check);
+  check_edges(check);
   check_motions(check);
   fmt::print("self-check: {} failures\n", check.failures);
   return check.failures;

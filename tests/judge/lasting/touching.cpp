@@ -190,13 +190,14 @@ Nearness of_boxes(const Box& a, const Moment& at_a, const Box& b, const Moment& 
   const TwoBoxes both{at_b.position - at_a.position, corners(a, at_a), corners(b, at_b),
                       real(a.half_extents).norm() + real(b.half_extents).norm()};
   std::vector<Vector> axes;
+  std::vector<Vector> of_near_parallel;  // they separate edges that pass by each other, no faces
   for (int i = 0; i < 3; ++i) {
     axes.emplace_back(at_a.turned.col(i));
     axes.emplace_back(at_b.turned.col(i));
     for (int j = 0; j < 3; ++j) {
       const Vector m = Vector(at_a.turned.col(i)).cross(Vector(at_b.turned.col(j)));
-      if (m.norm() > 1e-6L) {  // what nearly parallel edges would tell, faces do
-        axes.emplace_back(m.normalized());
+      if (m.norm() > 0) {  // where they touch along nearly parallel edges, faces tell
+        (m.norm() > 1e-6L ? axes : of_near_parallel).emplace_back(m.normalized());
       }
     }
   }
@@ -204,6 +205,9 @@ Nearness of_boxes(const Box& a, const Moment& at_a, const Box& b, const Moment& 
   for (Vector& n : axes) {
     n = n.dot(both.between) < 0 ? Vector(-n) : n;
     found.gap = std::max(found.gap, both.gap(n));
+  }
+  for (const Vector& n : of_near_parallel) {
+    found.gap = std::max({found.gap, both.gap(n), both.gap(-n)});
   }
   if (found.gap > margin) {
     return found;

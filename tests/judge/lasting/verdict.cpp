@@ -224,7 +224,9 @@ class Judge {
     }
     loads_at(t);
     look_at_pairs(t);
-    look_at_groups(t);
+    if (look_.forces) {
+      look_at_groups(t);
+    }
     look_at_energy(t);
   }
 

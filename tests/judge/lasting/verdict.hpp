@@ -46,6 +46,7 @@ struct Look {
   int most_legs = 2000;  ///< of which so many are looked at, evenly
   std::uint64_t seed = 1;
   Real friction = 1;    ///< factor of all coefficients: another than 1 must be found out
+  bool forces = true;   ///< of groups, too: of all it looks at, what takes longest
   double only_at = -1;  ///< s; not negative: look at this instant alone, and tell of it
   Allowed allowed;
 };
