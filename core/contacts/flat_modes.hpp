@@ -50,6 +50,7 @@ struct FlatMode {
   std::vector<Twist> velocities;  ///< with nothing left along the normals that are kept
   std::vector<Twist> accelerations;
   std::vector<char> kept;         ///< by patch: stays in touch
+  std::vector<char> struck;       ///< by patch: an impulse stopped it; empty: none
   std::vector<double> pressing;   ///< by patch: normal force, N
   std::vector<double> rate;       ///< by patch: fastest point along the normal before, m/s, >= 0
   std::vector<Slip> slip;         ///< by patch, where there is friction; otherwise empty

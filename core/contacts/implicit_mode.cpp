@@ -156,7 +156,12 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
     fastest = std::max(fastest, v.linear.norm() + v.angular.norm() * state.radius[i]);
   }
   // Nothing approaches at the start.
-  velocities = sweeps.sweep(std::move(velocities), {}, {}, settled * fastest, false).velocities;
+  ContactSweeps::Swept stopped =
+      sweeps.sweep(std::move(velocities), {}, {}, settled * fastest, false);
+  velocities = std::move(stopped.velocities);
+  for (const Vector3& impulse : stopped.impulse) {
+    mode.struck.push_back(impulse.isZero(0.0) ? 0 : 1);
+  }
   for (const Vector6& v : velocities) {
     mode.velocities.push_back({v.head<3>(), v.tail<3>()});
   }

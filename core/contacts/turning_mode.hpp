@@ -15,6 +15,7 @@ struct TurningMode {
   std::vector<FrictionChoice> choices;  ///< by touch; directions are those of sliding
   TurningForces::Solution forces;
   std::vector<Twist> velocities;  ///< by body, with nothing left of what is held
+  std::vector<char> struck;       ///< by touch: an impulse stopped it at the start; empty: none
   double driven = 0.0;            ///< work of what joints hang on in that, J
   bool flies = false;             ///< nothing is held
   bool implicit = false;          ///< forces are those of a step, see `implicit_mode`

@@ -106,6 +106,18 @@ TEST_CASE("implicit step: forces are those of the velocities that the step begin
   }
 }
 
+TEST_CASE("implicit step: what approaches when it begins is stopped by an impulse, which is told",
+          "[implicit]") {
+  constexpr double h = 1e-3;
+  const TurningState state = blocks({{0.0, -0.1 * g * h, 0.0}, {0.0, 0.1 * g * h, 0.0}}, 0.3);
+  const TurningMode mode = implicit_mode(state, h, {});
+  REQUIRE(mode.refusal.empty());
+  REQUIRE(mode.struck.size() == 8);
+  const std::ptrdiff_t struck = std::count(mode.struck.begin(), mode.struck.begin() + 4, 1);
+  CHECK(struck >= 1);  // one corner or more: they are redundant
+  CHECK(std::count(mode.struck.begin() + 4, mode.struck.end(), 1) == 0);
+}
+
 TEST_CASE("implicit step: impulses are within their cones, and take energy from what they meet",
           "[implicit]") {
   constexpr std::uint64_t seed = 20261124;

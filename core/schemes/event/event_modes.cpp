@@ -17,6 +17,9 @@ namespace {
 
 /// Points are off by the gaps that count as touch: so are impulses, by this part of the speeds.
 constexpr double off_by_gaps = 1e-8;
+/// What rocks in touch and is laid still comes to rest, which is told, where it was faster than
+/// this part of the speeds, or of what a body gains that falls by its size: steps are off by less.
+constexpr double off_by_steps = 1e-9;
 
 }  // namespace
 
@@ -433,6 +436,18 @@ void EventModes::tell(std::span<const Change> changes, Instant t) {
   }
 }
 
+/// Of two bodies the fastest, or what one gains that falls by its size if that is more, m/s.
+double EventModes::speed(const Gathered& found, const GroupPatch& patch) {
+  double fastest = 0.0;
+  for (const std::size_t k : {patch.a, patch.b}) {
+    const double r = found.group.radius[k];
+    const auto& [v, w] = found.states[k].twist;
+    fastest = std::max(
+        {fastest, v.norm() + r * w.norm(), std::sqrt(found.group.loads[k].linear.norm() * r)});
+  }
+  return fastest;
+}
+
 /// Updates the contact graph; returns the contacts that end and those that begin now. Contacts
 /// whose bounces have not died down begin later, by an event of their own.
 std::vector<EventModes::Change> EventModes::join_and_part(const Gathered& found,
@@ -459,16 +474,28 @@ std::vector<EventModes::Change> EventModes::join_and_part(const Gathered& found,
     }
   }
   for (std::size_t p = 0; p < found.pairs.size(); ++p) {
-    if (mode.kept[p] == 0) {
-      continue;
-    }
     const auto [a, b] = found.pairs[p];
     const bool is_new = !graph_.joins(a, b);
+    if (mode.kept[p] == 0) {
+      const bool has_ended = std::find(ended.begin(), ended.end(), found.pairs[p]) != ended.end();
+      if (p < mode.struck.size() && mode.struck[p] != 0 && !has_ended) {
+        // It parts again, but for an instant it was in contact.
+        changes.push_back({EventKind::contact_begins, a, b, mode.grade});
+        changes.push_back({EventKind::contact_ends, a, b, mode.grade});
+      }
+      continue;
+    }
     Patch& patch = graph_.join(a, b);
+    const bool comes_to_rest = patch.told && patch.turns && !mode.turns &&
+                               mode.rate[p] > off_by_steps * speed(found, found.group.patches[p]);
+    if (comes_to_rest) {
+      changes.push_back({EventKind::contact_ends, a, b, patch.grade});
+      patch.told = false;
+    }
     patch.manifold = found.group.patches[p].manifold;
     patch.turns = mode.turns;
     patch.grade = mode.grade;
-    if (!is_new && !(mode.turns && !patch.told)) {
+    if (!is_new && !comes_to_rest && !(mode.turns && !patch.told)) {
       continue;
     }
     const double e = run_.model.restitution(a, b);

@@ -227,12 +227,15 @@ class EventModes {
   [[nodiscard]] bool part_ways(const Gathered& found, Turning& turning, Instant t,
                                const Adopt& adopt);
   [[nodiscard]] std::vector<double> hops(const Gathered& found);
+  [[nodiscard]] static std::vector<char> struck_pairs(const Gathered& found,
+                                                      const Turning& turning);
   [[nodiscard]] bool fly(const Gathered& found, const Turning& turning, Instant t,
                          const Adopt& adopt);
   void book_lift(const Gathered& found, Instant t);
   void carry_on(const Gathered& found, const Turning& turning, Instant t, const Adopt& adopt);
   void end_together(const Gathered& found, const FlatMode& mode, Instant end, bool strikes);
   [[nodiscard]] bool settle_driven(Gathered found, Instant t, const Adopt& adopt);
+  [[nodiscard]] static double speed(const Gathered& found, const GroupPatch& patch);
   [[nodiscard]] std::vector<Change> join_and_part(const Gathered& found, const FlatMode& mode,
                                                   Instant t);
   void set_friction(const Gathered& found, const FlatMode& mode, Instant t,

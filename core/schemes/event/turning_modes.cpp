@@ -392,26 +392,26 @@ void EventModes::tell_jam(const Gathered& found, const Turning& turning, Instant
 }
 
 /// Nothing presses those that come to rest on each other: they go on by themselves, and none
-/// approaches another any more. What took an impulse has been in contact, and is told.
+/// approaches another any more.
 bool EventModes::part_ways(const Gathered& found, Turning& turning, Instant t, const Adopt& adopt) {
   auto apart = parting(turning.group.start);
   if (!apart) {
     return false;
   }
   turning.mode.velocities = std::move(apart->velocities);
+  turning.mode.struck = std::move(apart->struck);
   turning.mode.driven = apart->driven;
-  std::vector<Change> changes;
-  for (std::size_t k = 0; k < apart->struck.size(); ++k) {
-    const auto& [a, b] = found.pairs[turning.group.start.touches[k].pair];
-    const bool told = !changes.empty() && changes.back().a == a && changes.back().b == b;
-    if (apart->struck[k] != 0 && !told && !graph_.joins(a, b)) {
-      changes.push_back({EventKind::contact_begins, a, b, Grade::sampled});
-      changes.push_back({EventKind::contact_ends, a, b, Grade::sampled});
-    }
+  return fly(found, turning, t, adopt);
+}
+
+/// By pair: whether an impulse stopped one of its touches.
+std::vector<char> EventModes::struck_pairs(const Gathered& found, const Turning& turning) {
+  std::vector<char> struck(found.pairs.size(), 0);
+  for (std::size_t k = 0; k < turning.mode.struck.size(); ++k) {
+    const std::size_t p = turning.group.start.touches[k].pair;
+    struck[p] = struck[p] != 0 || turning.mode.struck[k] != 0 ? 1 : 0;
   }
-  const bool flies = fly(found, turning, t, adopt);
-  tell(changes, t);
-  return flies;
+  return struck;
 }
 
 /// How fast those that were not held yet still hop, m/s, by pair: what takes that from them
@@ -443,6 +443,7 @@ bool EventModes::fly(const Gathered& found, const Turning& turning, Instant t, c
   mode.kept.assign(found.pairs.size(), 0);
   mode.slip.assign(found.pairs.size(), Slip::none);
   mode.rate = hops(found);
+  mode.struck = struck_pairs(found, turning);
   book_lift(found, t);
   commit(found, mode, t, adopt);
   return true;
@@ -461,6 +462,7 @@ void EventModes::carry_on(const Gathered& found, const Turning& turning, Instant
   mode.kept.assign(n, 0);
   mode.pressing.assign(n, 0.0);
   mode.rate = hops(found);
+  mode.struck = struck_pairs(found, turning);
   mode.slip.assign(n, Slip::none);
   mode.force.assign(n, Vector3::Zero());
   for (std::size_t k = 0; k < turning.step.choices.size(); ++k) {
