@@ -20,6 +20,8 @@ namespace {
 constexpr double least_progress = 1e-12;
 /// `contact_begins` of a contact whose beginning has been recorded.
 constexpr Instant recorded{-1.0, 0.0};
+/// So often what stalls is settled as ever.
+constexpr int most_in_vain = 8;
 
 }  // namespace
 
@@ -154,7 +156,6 @@ void EventContacts::stay(BodyIndex a, BodyIndex b, Instant t) {
 /// Settles what is in touch where time does not go on. Where that was done in vain again and again,
 /// it turns, as over a rim; or a step is made over all of it.
 bool EventContacts::settle_stalled(std::span<const BodyIndex> seeds, Instant t) {
-  constexpr int most_in_vain = 8;
   stalled_ = stalled_at_ == t ? stalled_ + 1 : 0;
   stalled_at_ = t;
   const auto settle_turned = [&](bool step_over) {
@@ -164,6 +165,15 @@ bool EventContacts::settle_stalled(std::span<const BodyIndex> seeds, Instant t) 
   return go_on_if((stalled_ > most_in_vain && (settle_turned(false) || settle_turned(true))) ||
                       settle(seeds, t, {.unloaded = true, .may_turn = true}),
                   seeds);
+}
+
+/// The same of two that are held by nobody, or they are left alone; this first where it was settled
+/// in vain, turned as well.
+bool EventContacts::go_on_stalled(BodyIndex a, BodyIndex b, Instant t) {
+  const std::array<BodyIndex, 2> pair{a, b};
+  const bool in_vain = stalled_at_ == t && stalled_ > 2 * most_in_vain;
+  return (in_vain && leave_alone(a, b, t)) || settle_stalled(pair, t) ||
+         (!in_vain && leave_alone(a, b, t));
 }
 
 /// The same before a run would stop.
@@ -254,7 +264,7 @@ void EventContacts::touch(BodyIndex a, BodyIndex b, const Contact& contact, Inst
     return;
   }
   if (accumulation_.stalls(a, b, t, least_progress * run_.epoch())) {
-    if (settle_stalled(pair, t) || leave_alone(a, b, t)) {
+    if (go_on_stalled(a, b, t)) {
       return;
     }
     if (const double until = comes_together(a, b, t, bracket); until > 0.0) {

@@ -89,6 +89,7 @@ class EventContacts {
   [[nodiscard]] bool settle(std::span<const BodyIndex> seeds, Instant t,
                             const EventModes::SettleOptions& options = {});
   [[nodiscard]] bool settle_stalled(std::span<const BodyIndex> seeds, Instant t);
+  [[nodiscard]] bool go_on_stalled(BodyIndex a, BodyIndex b, Instant t);
   [[nodiscard]] bool settle_at_last(std::span<const BodyIndex> seeds, Instant t);
   bool go_on_if(bool settled, std::span<const BodyIndex> seeds);
   [[nodiscard]] bool could_be_supported(BodyIndex a, BodyIndex b, Instant t) const;
