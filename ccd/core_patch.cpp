@@ -290,7 +290,7 @@ CorePatch core_patch(const CorePair& pair, const Vector3& n, double within) {
     found = clipped(b, a, plane, size);
   } else if (b.size > 2) {
     of_b = false;
-    found = clipped(a, b, plane, size);
+    found = clipped(a, b, Plane(-n), size);  // b is seen from its own side
   } else {
     found = common(a, b, plane);
   }

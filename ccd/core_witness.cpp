@@ -158,6 +158,22 @@ void start_elsewhere(const CorePair& pair, const GjkResult& found, CoreWitness& 
   }
 }
 
+/// What touches to roundoff may be inside, and nothing that expands there finds how little: along
+/// an axis of one of them, as across a face that something lies on, they may overlap less.
+void try_axes(const CorePair& pair, CoreWitness& witness) {
+  for (int k = 0; k < 3; ++k) {
+    for (const Vector3& axis : {Vector3(pair.R_WA.col(k)), Vector3(pair.R_WB.col(k))}) {
+      for (const double sign : {1.0, -1.0}) {
+        const double separation = pair.separation(sign * axis);
+        if (separation > witness.separation) {
+          witness.separation = separation;
+          witness.n = sign * axis;
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 
 CoreWitness core_witness(const CorePair& pair, double reach, double precision, double error) {
@@ -193,6 +209,9 @@ CoreWitness core_witness(const CorePair& pair, double reach, double precision, d
     keep(pair, expand(pair, Vector3::Zero(), found.simplex, error, error), witness);
   }
   polish(pair, witness.on_b - witness.on_a, witness.n, witness.separation);
+  if (witness.separation < -64.0 * error) {
+    try_axes(pair, witness);
+  }
   if (!found.inside && (pair.a.width() == 0.0 || pair.b.width() == 0.0)) {
     keep_polished(pair, found, witness);
   }

@@ -1,10 +1,14 @@
 // The points of a patch: where two shapes touch, in whatever frame.
 
 #include "ccd/certified.hpp"
+#include "core/polytope.hpp"
 #include "core/random.hpp"
 #include "tests/catch.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 using namespace kairos;
 
@@ -136,4 +140,56 @@ TEST_CASE("boxes that lie on each other with a small tilt touch in a face, not w
     CHECK(m.size >= 4);
   }
   CHECK(faces == 200);
+}
+
+// The edge lies on the face of the first or of the second: its ends are found either way.
+TEST_CASE("an edge on a face touches with both its ends, whatever shapes they are of",
+          "[manifold]") {
+  std::vector<Vector3> corners;
+  for (int k = 0; k < 8; ++k) {
+    corners.emplace_back((k & 1) != 0 ? 1.0 : -1.0, (k & 2) != 0 ? 0.5 : -0.5,
+                         (k & 4) != 0 ? 2.0 : -2.0);
+  }
+  const Hull block = Hull{convex_hull(corners).polytope};
+  const std::vector<Placed> floors{{Box{{1.0, 0.5, 2.0}}, at(Vector3::Zero())},
+                                   {block, at(Vector3::Zero())}};
+  // Each has an edge of length 1 along z above (0.25, 0.5, 0.5).
+  const Vector3 middle(0.25, 0.5, 0.5);
+  const Pose on_edge = at(middle + Vector3(0.0, std::sqrt(0.5), 0.0), {0.0, 0.0, M_PI / 4.0});
+  for (Vector3& x : corners) {
+    x = x.cwiseProduct(Vector3(0.5, 1.0, 0.25));
+  }
+  const std::vector<Placed> edges{
+      {Box{{0.5, 0.5, 0.5}}, on_edge},
+      {Hull{convex_hull(corners).polytope}, on_edge},
+      {Capsule{0.1, 1.0}, at(middle + Vector3(0.0, 0.1, 0.0), {M_PI / 2.0, 0.0, 0.0})},
+      {Cylinder{0.1, 1.0}, at(middle + Vector3(0.0, 0.1, 0.0), {M_PI / 2.0, 0.0, 0.0})}};
+  for (const Placed& floor : floors) {
+    for (const Placed& edge : edges) {
+      CAPTURE(floor.shape.index(), edge.shape.index());
+      const ContactManifold m = ask(floor, edge, 1e-9);
+      REQUIRE(m.size == 2);
+      CHECK((m.normal - Vector3::UnitY()).norm() <= 1e-12);
+      std::array<double, 2> along{m.points[0].position.z(), m.points[1].position.z()};
+      std::sort(along.begin(), along.end());
+      CHECK(along[0] == Approx(0.0).margin(1e-9));
+      CHECK(along[1] == Approx(1.0).margin(1e-9));
+      for (std::size_t k = 0; k < m.size; ++k) {
+        CHECK(std::abs(m.points[k].position.x() - 0.25) <= 1e-9);
+      }
+    }
+  }
+}
+
+// Reported as inside each other by a tenth of their size where they share less than roundoff.
+TEST_CASE("what is inside another by roundoff is not deep inside", "[manifold]") {
+  const auto detector = ccd::make_certified();
+  const Box floor{{1.0, 0.1, 1.0}};
+  const Cone cone{0.15, 0.3};
+  for (const double sunk : {0.0, 3e-17, 1e-16, 1e-15, 1e-13, 1e-9}) {
+    const Pose pose = at({0.0, 0.225 - sunk, 0.0}, {0.0, 0.0, M_PI});
+    CAPTURE(sunk);
+    const Overlap found = detector->overlap(floor, at({0.0, -0.1, 0.0}), cone, pose);
+    CHECK(std::abs(found.gap + sunk) <= 1e-15);  // 4 eps of the coordinates
+  }
 }
