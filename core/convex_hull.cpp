@@ -1,3 +1,4 @@
+#include "core/error.hpp"
 #include "core/mass_properties.hpp"
 #include "core/polytope.hpp"
 
@@ -245,7 +246,14 @@ ConvexHull make_hull(std::span<const Vector3> points, HullFrame frame) {
     }
   }
   const auto faces = polygons(points, Incremental(points).triangles());
-  const MassProperties mass = mass_properties(points, fans(faces));
+  const MassProperties mass = [&] {
+    try {
+      return mass_properties(points, fans(faces));
+    } catch (const InputError&) {
+      throw std::invalid_argument(fmt::format(
+          "{} points are no solid: rounding hides the volume that they span", points.size()));
+    }
+  }();
   const bool principal = is_principal(mass.inertia);
   ConvexHull hull;
   hull.centre = frame == HullFrame::told ? Vector3(Vector3::Zero()) : mass.centre;

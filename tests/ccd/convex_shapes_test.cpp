@@ -251,3 +251,11 @@ TEST_CASE("contact patches of round things", "[convex]") {
   CHECK(on_box.size == 2);
   CHECK(std::abs(on_box.normal.y() + 1.0) <= 1e-12);
 }
+
+TEST_CASE("points whose volume rounding hides are no hull", "[hull]") {
+  for (const double high : {0.0, 1e-16, 1e-14}) {
+    CAPTURE(high);
+    const std::vector<Vector3> points{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {1, high, 1}};
+    CHECK_THROWS_AS(convex_hull(points), std::invalid_argument);
+  }
+}

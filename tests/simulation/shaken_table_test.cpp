@@ -114,3 +114,29 @@ TEST_CASE("a table that shakes aslant: a block sticks while friction of what pre
   CHECK(std::abs(sim.result.end.seconds - slips) <= 1e-12);
   tests::check_explained(sim.result.ledger);
 }
+
+// It is thrown off, and lands where the table falls away faster than it would: it leaves at once.
+// Blocks that came to rest there were settled at that instant without end.
+TEST_CASE("what lands on a table that falls away faster goes on with its velocity", "[driven]") {
+  const double amplitude = 0.1;
+  const double w = 6.0 * M_PI;
+  const double end = 0.6;
+  for (const std::string& shape : {block(), ball()}) {
+    CAPTURE(shape);
+    const std::string text = scene(end, {0.0, amplitude, 0.0}, w, shape, 0.0);
+    const Simulation sim = simulate(parse_scene(text, "test.toml"), {});
+    INFO(sim.result.reason);
+    REQUIRE(sim.result.status == RunStatus::completed);
+    const Event* const lands = first(sim, EventKind::impact);
+    REQUIRE(lands != nullptr);
+    const double t = lands->time.seconds;
+    REQUIRE(amplitude * w * w * std::sin(w * t) > g);
+    const double flight = end - t;
+    const double height = half + amplitude * (std::sin(w * t) + w * std::cos(w * t) * flight) -
+                          0.5 * g * flight * flight;
+    const BodyState load = sim.trajectory.at(1, Instant{} + end);
+    // Impacts are located to 1e-9 of the extent; what has a speed of w A goes that far.
+    CHECK(std::abs(load.pose.position.y() - height) <= 1e-8);
+    tests::check_explained(sim.result.ledger);
+  }
+}

@@ -106,7 +106,7 @@ bool EventModes::settle_once(std::span<const BodyIndex> seeds, Instant t, const 
     why_not_ = found.hangs + ", and what it touches is driven";
   }
   if (why_not_.empty() && found.driven) {
-    return settle_driven(found, t, adopt);
+    return settle_driven(found, t, adopt, options);
   }
   if (why_not_.empty() && found.pairs.size() < options.pairs) {
     why_not_ = "some are still on their way";

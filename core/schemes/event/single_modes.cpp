@@ -13,7 +13,8 @@
 namespace kairos {
 inline namespace core {
 /// Settles one block on one driven face.
-bool EventModes::settle_driven(Gathered found, Instant t, const Adopt& adopt) {
+bool EventModes::settle_driven(Gathered found, Instant t, const Adopt& adopt,
+                               const SettleOptions& options) {
   const BodyIndex surface = *found.driven;
   const bool alone = found.bodies.size() == 2 && found.pairs.size() == 1;
   const BodyIndex body = alone && found.bodies[0] == surface ? found.bodies[1] : found.bodies[0];
@@ -57,6 +58,10 @@ bool EventModes::settle_driven(Gathered found, Instant t, const Adopt& adopt) {
   mode.velocities = found.group.velocities;
   mode.accelerations = found.group.loads;
   mode.kept = {0};
+  if (driven.parts && options.pressed) {
+    why_not_ = "nothing presses";
+    return false;
+  }
   if (driven.parts) {
     run_.account.moved(body, position - before);
     commit(found, mode, t, adopt);
