@@ -121,9 +121,12 @@ TEST_CASE("what lands on a table that falls away faster goes on with its velocit
   const double amplitude = 0.1;
   const double w = 6.0 * M_PI;
   const double end = 0.6;
+  const std::string plate = "half_extents = [1, 0.1, 1]\nposition = [0, -0.1, 0]\n";
   for (const std::string& shape : {block(), ball()}) {
     CAPTURE(shape);
-    const std::string text = scene(end, {0.0, amplitude, 0.0}, w, shape, 0.0);
+    std::string text = scene(end, {0.0, amplitude, 0.0}, w, shape, 0.0);
+    const std::string plane = "shape = \"half-space\"\nnormal = [0, 1, 0]\n";
+    text.replace(text.find(plane), plane.size(), plate);
     const Simulation sim = simulate(parse_scene(text, "test.toml"), {});
     INFO(sim.result.reason);
     REQUIRE(sim.result.status == RunStatus::completed);
