@@ -475,7 +475,6 @@ std::vector<EventModes::Change> EventModes::join_and_part(const Gathered& found,
   }
   for (std::size_t p = 0; p < found.pairs.size(); ++p) {
     const auto [a, b] = found.pairs[p];
-    const bool is_new = !graph_.joins(a, b);
     if (mode.kept[p] == 0) {
       const bool has_ended = std::find(ended.begin(), ended.end(), found.pairs[p]) != ended.end();
       if (p < mode.struck.size() && mode.struck[p] != 0 && !has_ended) {
@@ -485,6 +484,7 @@ std::vector<EventModes::Change> EventModes::join_and_part(const Gathered& found,
       }
       continue;
     }
+    const bool is_new = !graph_.joins(a, b);
     Patch& patch = graph_.join(a, b);
     const bool comes_to_rest = patch.told && patch.turns && !mode.turns &&
                                mode.rate[p] > off_by_steps * speed(found, found.group.patches[p]);

@@ -58,11 +58,11 @@ bool EventModes::settle_driven(Gathered found, Instant t, const Adopt& adopt,
   mode.velocities = found.group.velocities;
   mode.accelerations = found.group.loads;
   mode.kept = {0};
-  if (driven.parts && options.pressed) {
-    why_not_ = "nothing presses";
-    return false;
-  }
   if (driven.parts) {
+    if (options.pressed) {
+      why_not_ = "nothing presses";
+      return false;
+    }
     run_.account.moved(body, position - before);
     commit(found, mode, t, adopt);
     return true;
