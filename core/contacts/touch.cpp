@@ -79,15 +79,15 @@ TouchNow ball_on_ball(const Placed& a, const Placed& b) {
   return now;
 }
 
-/// A ball of b at a line of a.
+/// A ball of b at a line of a, or at what is round it.
 TouchNow ball_on_line(const Placed& a, const Placed& b) {
   const Vector3& e = a.direction;
   const Vector3 between = b.at - a.at;
   const Vector3 foot = a.at + e * e.dot(between);
   const double distance = (b.at - foot).norm();
   const Vector3 n = (b.at - foot) / distance;
-  TouchNow now = of_points(a, b, n, distance - b.radius);
-  now.point_a = foot;
+  TouchNow now = of_points(a, b, n, distance - a.radius - b.radius);
+  now.point_a = foot + a.radius * n;
   const Vector3 centre = b.velocity(b.at);
   const Vector3 seen = centre - a.velocity(b.at);  // in the frame of a
   const Vector3 across = seen - n * n.dot(seen) - e * e.dot(seen);
@@ -100,6 +100,7 @@ TouchNow ball_on_line(const Placed& a, const Placed& b) {
   return now;
 }
 
+/// Two lines, or what is round them. Their nearest points, the feet, move along them.
 TouchNow line_on_line(const Placed& a, const Placed& b, const Vector3& side) {
   const Vector3 m = a.direction.cross(b.direction);
   const double length = m.norm();
@@ -109,16 +110,25 @@ TouchNow line_on_line(const Placed& a, const Placed& b, const Vector3& side) {
   // Nearest points: between + t_b e_b - t_a e_a along n.
   const Vector3 to_a = b.direction.cross(m) / (length * length);
   const Vector3 to_b = a.direction.cross(m) / (length * length);
-  TouchNow now;
-  now.normal = n;
-  now.gap = n.dot(between);
-  now.point_a = a.at + a.direction * between.dot(to_a);
-  now.point_b = b.at + b.direction * between.dot(to_b);
-  now.velocity = b.velocity(now.point_b) - a.velocity(now.point_a);
-  now.bias = b.centripetal(now.point_b) - a.centripetal(now.point_a);
+  const Vector3 foot_a = a.at + a.direction * between.dot(to_a);
+  const Vector3 foot_b = b.at + b.direction * between.dot(to_b);
+  const double distance = n.dot(between);
   const Vector3 m_rate =
       a.w.cross(a.direction).cross(b.direction) + a.direction.cross(b.w.cross(b.direction));
-  now.normal_bias = n.dot(now.bias) + 2.0 * sign * now.velocity.dot(m_rate) / length;
+  const Vector3 n_rate = sign * (m_rate - n * n.dot(m_rate)) / length;
+  const Vector3 v = b.velocity(foot_b) - a.velocity(foot_a);
+  const Vector3 left = v - distance * n_rate;
+  const Vector3 change = b.centripetal(foot_b) + b.w.cross(b.direction) * left.dot(to_b) -
+                         a.centripetal(foot_a) - a.w.cross(a.direction) * left.dot(to_a);
+  const Vector3 turns = a.radius * a.w + b.radius * b.w;
+  TouchNow now;
+  now.normal = n;
+  now.gap = distance - a.radius - b.radius;
+  now.point_a = foot_a + a.radius * n;
+  now.point_b = foot_b - b.radius * n;
+  now.velocity = v - turns.cross(n);
+  now.bias = change - turns.cross(n_rate);
+  now.normal_bias = n.dot(change) + n_rate.dot(v);
   return now;
 }
 
@@ -216,10 +226,18 @@ std::optional<TouchFeature> ball_feature(const Shape& shape, const Vector3& x,
 /// What is perpendicular to an edge has no more than this along it.
 constexpr double across_an_edge = 1e-6;
 
-/// The edge nearest to a point of the surface, of those that `across` is perpendicular to, or
-/// tilted from that by so much.
+/// The edge nearest to a point of the surface, of those that `across` (outward) is perpendicular
+/// to, or tilted from that by so much; of a capsule its axis.
 std::optional<TouchFeature> line_feature(const Shape& shape, const Vector3& x,
                                          const Vector3& across, double tilted = across_an_edge) {
+  if (const auto* capsule = std::get_if<Capsule>(&shape)) {
+    const Vector3 from = x - capsule->radius * across;
+    const bool side = capsule->length > 0.0 && std::abs(across.y()) <= tilted &&
+                      Vector3(from.x(), 0.0, from.z()).norm() <= near_vertex * capsule->radius;
+    return side ? std::optional(
+                      TouchFeature{Kind::line, Vector3::Zero(), Vector3::UnitY(), capsule->radius})
+                : std::nullopt;
+  }
   const auto c = polytope_corners(shape);
   if (!c || c->rounding > 0.0) {
     return std::nullopt;
@@ -499,7 +517,7 @@ std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point
     return touch;
   }
   const auto edge_a = line_feature(shape_a, on_a, n_A);
-  const auto edge_b = line_feature(shape_b, on_b, n_B);
+  const auto edge_b = line_feature(shape_b, on_b, -n_B);
   if ((corner_a || edge_a) && (corner_b || edge_b)) {
     touch.on_a = corner_a ? *corner_a : *edge_a;
     touch.on_b = corner_b ? *corner_b : *edge_b;

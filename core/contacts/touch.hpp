@@ -16,7 +16,7 @@ struct TouchFeature {
   enum class Kind : char {
     ball,   ///< all within `radius` of a point; radius 0: a vertex
     plane,  ///< of a face
-    line,   ///< of an edge
+    line,   ///< of an edge; with a radius all within that of it: the side of a capsule
   };
   Kind kind = Kind::ball;
   Vector3 at = Vector3::Zero();         ///< body frame, m

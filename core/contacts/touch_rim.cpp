@@ -108,11 +108,16 @@ std::optional<Sides> region(const TouchFeature& feature, const Shape& shape) {
   if (std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<Sphere>(shape)) {
     return Sides{};
   }
-  if (std::holds_alternative<Capsule>(shape)) {
-    return feature.kind == Kind::ball
-               ? std::optional(Sides{
-                     through(Vector3::UnitY() * (feature.at.y() < 0.0 ? 1.0 : -1.0), feature.at)})
-               : std::nullopt;
+  if (const auto* capsule = std::get_if<Capsule>(&shape)) {
+    const double end = 0.5 * capsule->length;
+    switch (feature.kind) {
+      case Kind::ball:
+        return Sides{through(Vector3::UnitY() * (feature.at.y() < 0.0 ? 1.0 : -1.0), feature.at)};
+      case Kind::line:
+        return Sides{{Vector3::UnitY(), end}, {-Vector3::UnitY(), end}};
+      case Kind::plane:
+        return std::nullopt;
+    }
   }
   if (const auto* box = std::get_if<Box>(&shape)) {
     return box_sides(box->half_extents, feature);

@@ -154,20 +154,29 @@ Instant parting(const Simulation& sim) {
 
 // Held a gap of 6e-11 m above the surface, and with friction that stands for an infinite one until
 // the normal force is 1e-8 of it: 1e-10 s.
-TEST_CASE("turning 6: a ball rolls, or slides, off a ball that stays where it is",
+// Across a capsule it is the same as over a ball; the capsule is turned by an angle about its axis,
+// which changes nothing.
+TEST_CASE("turning 6: a ball rolls, or slides, off a ball or a capsule that stays where it is",
           "[turning][reference]") {
   struct Case {
     const char* friction;
     double time, angle;
+    const char* under;
   };
-  for (const auto& [friction, time, angle] :
-       {Case{"inf", 1.24979796669, 0.945550554159}, Case{"0", 1.01469724250, 0.845528201857}}) {
-    CAPTURE(friction);
+  const char* const ball = "shape = \"sphere\"\nradius = 1.0\n";
+  const char* const capsule =
+      "shape = \"capsule\"\nradius = 1.0\nlength = 3.0\norientation = [0.5, 0.5, 0.5, 0.5]\n";
+  for (const auto& [friction, time, angle, under] :
+       {Case{"inf", 1.24979796669, 0.945550554159, ball},
+        Case{"0", 1.01469724250, 0.845528201857, ball},
+        Case{"inf", 1.24979796669, 0.945550554159, capsule},
+        Case{"0", 1.01469724250, 0.845528201857, capsule}}) {
+    CAPTURE(friction, under);
     const std::string text =
         fmt::format(
             "duration = 1.5\nframe = \"1/60\"\nG = {}\nfriction = {}\n[[body]]\nname = "
-            "\"under\"\nentity = \"wall\"\nshape = \"sphere\"\nradius = 1.0\n",
-            g, friction) +
+            "\"under\"\nentity = \"wall\"\n{}",
+            g, friction, under) +
         rolling_ball(0.25, {1.25 * std::sin(0.1), 1.25 * std::cos(0.1), 0.0}, "");
     const auto sim = run(text);
     check_whole(sim, text);
@@ -181,6 +190,27 @@ TEST_CASE("turning 6: a ball rolls, or slides, off a ball that stays where it is
       }
     }
   }
+}
+
+// Sides of capsules cross, and touch in a point that moves along both.
+TEST_CASE("a log that falls across two others comes to rest on them", "[turning]") {
+  std::string text = fmt::format("duration = 1.5\nframe = \"1/60\"\nG = {}\nfriction = 0.5\n", g);
+  for (const double x : {-0.5, 0.5}) {
+    text += fmt::format(
+        "[[body]]\nname = \"log{}\"\nentity = \"wall\"\nshape = \"capsule\"\nradius = 0.2\nlength "
+        "= 2.0\norientation = [0.5, 0.5, 0.5, 0.5]\nposition = [{}, 0.2, 0]\n",
+        x > 0.0 ? 1 : 2, x);
+  }
+  text +=
+      "[[body]]\nname = \"top\"\nentity = \"body\"\nshape = \"capsule\"\nradius = 0.15\nlength = "
+      "2.0\nmass = 1\nrestitution = 0\norientation = [0.70710678118654752, 0, 0, "
+      "0.70710678118654752]\nposition = [0.1, 0.9, 0.1]\n";
+  const auto sim = run(text);
+  CAPTURE(sim.result.reason);
+  REQUIRE(sim.result.status == RunStatus::completed);
+  const BodyState& top = sim.result.state[2];
+  CHECK(top.twist.linear.norm() + top.twist.angular.norm() == 0.0);
+  CHECK(std::abs(top.pose.position.y() - 0.55) <= 1e-9);
 }
 
 // The rim of the table is a guard: from there on the ball turns about its edge.

@@ -1,0 +1,98 @@
+// Where and how fast two features touch, against differences of where they are.
+
+#include "core/contacts/touch.hpp"
+
+#include "core/random.hpp"
+#include "tests/catch.hpp"
+
+#include <Eigen/Geometry>
+
+#include <utility>
+
+using namespace kairos;
+
+namespace {
+
+using Kind = TouchFeature::Kind;
+
+Vector3 any(Random& random) {
+  Vector3 v;
+  for (int axis = 0; axis < 3; ++axis) {
+    v[axis] = random.uniform(-1.0, 1.0);
+  }
+  return v;
+}
+
+TouchFeature feature(Kind kind, double radius, Random& random) {
+  TouchFeature out;
+  out.kind = kind;
+  out.at = any(random);
+  out.direction = kind == Kind::ball ? Vector3(Vector3::Zero()) : Vector3(any(random).normalized());
+  out.radius = kind == Kind::plane ? 0.0 : radius;
+  return out;
+}
+
+/// After s without any force or torque about the middle of a ball.
+BodyState later(const BodyState& state, double s) {
+  BodyState out = state;
+  out.pose.position += s * state.twist.linear;
+  const Vector3 turn = s * state.twist.angular;
+  const double angle = turn.norm();
+  out.pose.orientation =
+      Quaternion(Eigen::AngleAxisd(angle, angle > 0.0 ? Vector3(turn / angle) : Vector3::UnitX())) *
+      state.pose.orientation;
+  return out;
+}
+
+/// A derivative by central differences with steps h and h/2, extrapolated: to h^4.
+template <typename F>
+auto slope(const F& f, double h) {
+  const auto once = [&](double d) { return ((f(d) - f(-d)) / (2.0 * d)).eval(); };
+  return ((4.0 * once(0.5 * h) - once(h)) / 3.0).eval();
+}
+
+}  // namespace
+
+TEST_CASE("velocities and accelerations of touches are derivatives", "[friction]") {
+  // All pairs of features that touch in one point: balls, planes, edges, sides of capsules.
+  Random random(20261130);
+  const std::pair<Kind, Kind> pairs[] = {{Kind::ball, Kind::plane}, {Kind::plane, Kind::ball},
+                                         {Kind::ball, Kind::ball},  {Kind::line, Kind::ball},
+                                         {Kind::ball, Kind::line},  {Kind::line, Kind::line}};
+  for (int trial = 0; trial < 600; ++trial) {
+    const auto [of_a, of_b] = pairs[trial % 6];
+    Touch touch;
+    touch.on_a = feature(of_a, trial % 4 < 2 ? 0.3 : 0.0, random);
+    touch.on_b = feature(of_b, trial % 3 == 0 ? 0.4 : 0.1, random);
+    BodyState a{{any(random), Quaternion::UnitRandom()}, {any(random), any(random)}};
+    BodyState b{{any(random), Quaternion::UnitRandom()}, {any(random), any(random)}};
+    a.pose.orientation =
+        Quaternion(Eigen::AngleAxisd(random.uniform(0.0, 3.0), any(random).normalized()));
+    b.pose.orientation =
+        Quaternion(Eigen::AngleAxisd(random.uniform(0.0, 3.0), any(random).normalized()));
+    touch.normal = b.pose.position - a.pose.position;
+    // They touch, and neither part nor approach.
+    TouchNow now = look_at(touch, a, b);
+    b.pose.position -= now.gap * now.normal;
+    now = look_at(touch, a, b);
+    b.twist.linear -= now.normal * now.normal.dot(now.velocity);
+    now = look_at(touch, a, b);
+    touch.normal = now.normal;
+    CAPTURE(trial, touch.on_a.radius, touch.on_b.radius);
+    CHECK(std::abs(now.gap) <= 1e-13);
+    CHECK((now.point_a - now.point_b).norm() <= 1e-12);
+    const auto at = [&](double s) { return look_at(touch, later(a, s), later(b, s)); };
+    const double h = 1e-3;
+    const auto rate = slope([&](double s) { return Eigen::Matrix<double, 1, 1>(at(s).gap); }, h);
+    const auto bend = slope(
+        [&](double s) { return Eigen::Matrix<double, 1, 1>(at(s).normal.dot(at(s).velocity)); }, h);
+    const Vector3 change = slope([&](double s) { return at(s).velocity; }, h);
+    // Nearly parallel lines, and balls whose middles are near to each other, turn fast.
+    const double steep = 1.0 + std::abs(now.normal_bias) + now.bias.norm();
+    if (steep < 50.0) {
+      CHECK(std::abs(rate[0]) <= 1e-6 * steep * steep);
+      CHECK(std::abs(bend[0] - now.normal_bias) <= 1e-6 * steep * steep);
+      CHECK((change - now.bias).norm() <= 1e-6 * steep * steep);
+    }
+  }
+}
