@@ -303,3 +303,34 @@ TEST_CASE("parts and heights that are none are refused", "[meshes]") {
   CHECK(says(complaint(read, "shape = \"height-field\"\nspacing = [1, 1]\nheights = [[0, 0], [0]]"),
              "has 1 numbers; allowed: 2 to 1000, as many in each row"));
 }
+
+TEST_CASE("a table slides down on its four legs", "[meshes]") {
+  // An incline of 30 degrees that is a box: its face is met by feet, and not under the middle.
+  constexpr double g = 9.8;
+  constexpr double mu = 0.2;
+  constexpr double half_height = 0.4;
+  const double c = std::cos(M_PI / 6.0);
+  const Vector3 up(c, 0.5, 0.0), out(-0.5, c, 0.0);
+  const auto at = [](const Vector3& p) { return fmt::format("[{}, {}, {}]", p.x(), p.y(), p.z()); };
+  const std::string tilted =
+      fmt::format("orientation = [{}, 0, 0, {}]", std::cos(M_PI / 12.0), std::sin(M_PI / 12.0));
+  std::string text = fmt::format(
+      "duration = 1.0\nframe = 0.05\nG = {}\nfriction = {}\n[[body]]\nname = \"slope\"\n"
+      "entity = \"wall\"\nhalf_extents = [9, 1, 2]\nposition = {}\n{}\n[[body]]\nname = "
+      "\"table\"\nentity = \"body\"\nmass = 1\nrestitution = 0\nshape = \"compound\"\n"
+      "position = {}\n{}\n",
+      g, mu, at(-out), tilted, at(4.0 * up + half_height * out), tilted);
+  for (const double x : {-0.45, 0.45}) {
+    for (const double z : {-0.25, 0.25}) {
+      text +=
+          fmt::format("[[body.part]]\nhalf_extents = [0.05, {}, 0.05]\nposition = [{}, 0, {}]\n",
+                      half_height, x, z);
+    }
+  }
+  const Simulation sim = run(tests::TemporaryFolder(), text);
+  CAPTURE(sim.result.reason);
+  REQUIRE(sim.result.status == RunStatus::completed);
+  const double slid = 0.5 * g * (0.5 - mu * c);
+  const Vector3 end = sim.result.state[1].pose.position;
+  CHECK((end - ((4.0 - slid) * up + half_height * out)).norm() <= 1e-9);
+}

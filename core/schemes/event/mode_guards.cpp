@@ -116,6 +116,31 @@ struct Guards {
     return face_exit_time(model.shape(bodies[place]), motions[place], point, outward, at, duration);
   }
 
+  /// When the centre of pressure, which is on none of the pieces of a body, as between the legs of
+  /// a table, leaves what it stands on: the outline of the points at which it touches, each until
+  /// it leaves the face of the other.
+  [[nodiscard]] double off_its_feet(std::size_t p, std::size_t place, const Motion& point) const {
+    const GroupPatch& patch = group.patches[p];
+    const std::size_t other = place == patch.a ? patch.b : patch.a;
+    const Vector3& n = patch.manifold.normal;
+    const Vector3 outward = place == patch.a ? n : Vector3(-n);
+    const Vector3& at = patch.manifold.points[0].position;
+    double until = infinity;
+    std::vector<Vector3> feet;
+    for (std::size_t k = 0; k < patch.manifold.size; ++k) {
+      Motion foot = motions[place];
+      foot.position[0] = patch.manifold.points[k].position;
+      const double leaves = rim(other, foot, -outward, at);
+      if (leaves > at_once * run.epoch()) {
+        feet.push_back(patch.manifold.points[k].position);
+        until = std::min(until, leaves);
+      }
+    }
+    return feet.size() < 3
+               ? 0.0
+               : std::min(until, outline_exit_time(feet, outward, motions[place], point, duration));
+  }
+
   /// Whether bodies at two places move alike.
   [[nodiscard]] bool alike(std::size_t a, std::size_t b) const {
     return mode.velocities[a].linear == mode.velocities[b].linear &&
@@ -177,10 +202,16 @@ struct Guards {
       return "a body that is carried by several others slides";
     }
     for (const std::size_t k : {patch.a, patch.b}) {
-      if (mode.velocities[k].angular.isZero(
-              0.0)) {  // a body that spins is carried under its middle
-        until = std::min(until, rim(k, *point, k == patch.a ? n : Vector3(-n), at));
+      if (!mode.velocities[k].angular.isZero(0.0)) {
+        continue;  // a body that spins is carried under its middle
       }
+      double leaves = rim(k, *point, k == patch.a ? n : Vector3(-n), at);
+      const bool other_spins =
+          !mode.velocities[k == patch.a ? patch.b : patch.a].angular.isZero(0.0);
+      if (leaves <= at_once * run.epoch() && !other_spins) {
+        leaves = off_its_feet(p, k, *point);
+      }
+      until = std::min(until, leaves);
     }
     return {};
   }

@@ -208,6 +208,37 @@ double face_exit_time(const Shape& surface, const Motion& surface_motion, const 
   return 0.0;
 }
 
+double outline_exit_time(std::span<const Vector3> outline, const Vector3& normal,
+                         const Motion& motion, const Motion& point, double duration) {
+  const Pose pose{motion.position[0], motion.orientation(0.0)};
+  double size = 0.0;
+  for (const Vector3& x : outline) {
+    size = std::max(size, (x - outline[0]).norm());
+  }
+  const double slack = 1e-12 * size;
+  FacePart inside;
+  for (const Vector3& from : outline) {
+    for (const Vector3& to : outline) {
+      Vector3 out = (to - from).cross(normal);
+      if (!(out.norm() > slack * size)) {
+        continue;  // one place, as roundoff goes
+      }
+      out.normalize();
+      const auto behind = [&](const Vector3& x) { return out.dot(x - from) <= slack; };
+      if (std::all_of(outline.begin(), outline.end(), behind)) {
+        const Vector3 side = pose.orientation.conjugate() * out;
+        inside.sides.push_back({side, side.dot(pose.to_body(from))});
+      }
+    }
+  }
+  if (inside.sides.empty()) {
+    return 0.0;
+  }
+  const std::vector<FacePart> parts{inside};
+  return Rim{parts, slack, in_frame(pose.orientation, point.position, motion.position), duration}
+      .passed();
+}
+
 double lift_off_time(const Motion& surface_motion, const Vector3& normal, double mass,
                      const Vector3& force) {
   const Polynomial<3> acceleration = surface_motion.velocity.differentiated();

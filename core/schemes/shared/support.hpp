@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 
 namespace kairos {
 inline namespace core {
@@ -37,6 +38,11 @@ struct Support {
 [[nodiscard]] double face_exit_time(const Shape& surface, const Motion& surface_motion,
                                     const Motion& point, const Vector3& normal, const Vector3& at,
                                     double duration);
+
+/// When a point leaves the convex outline of these points (world, at the start of the motion) on a
+/// plane with this normal, which goes with a body that does not turn, s; as `face_exit_time`.
+[[nodiscard]] double outline_exit_time(std::span<const Vector3> outline, const Vector3& normal,
+                                       const Motion& motion, const Motion& point, double duration);
 
 /// When a driven surface draws away faster than the force on the ball (N) can follow: the first
 /// zero of the contact force m a_s.n - F.n, local to the surface's motion, s; infinite if none.
