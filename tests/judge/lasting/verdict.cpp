@@ -522,11 +522,39 @@ class Judge {
   // --- Between instants
   // ---------------------------------------------------------------------------
 
+  /// What gravity is given up to t where bodies are put at gaps that can be held: from one motion
+  /// to the next, by less than this part of their size.
+  Real lifted_until(Instant t) {
+    constexpr Real least = 1e-8L;
+    if (lifts_.empty()) {
+      for (BodyIndex i = 0; i < model_.size(); ++i) {
+        const auto& motions = run_.motions(i);
+        const bool as_force = model_.scene().gravity == GravityMode::force;
+        const Real weight = Real(model_.body(i).G) * (as_force ? 1 : Real(model_.body(i).mass));
+        for (std::size_t k = 1; model_.is_free(i) && k < motions.size(); ++k) {
+          const Instant start = motions[k].start;
+          const Vector up =
+              moment_of(motions[k], 0).position -
+              moment_of(motions[k - 1], seconds(motions[k - 1].start, start)).position;
+          if (up.norm() <= least * reach(model_.shape(i))) {
+            lifts_[start] += weight * up.y();
+          }
+        }
+      }
+      lifts_[Instant{}] += 0;
+      next_lift_ = lifts_.begin();
+    }
+    for (; next_lift_ != lifts_.end() && !(t < next_lift_->first); ++next_lift_) {
+      lifted_ += next_lift_->second;
+    }
+    return lifted_;
+  }
+
   void look_at_energy(Instant t) {
     if (!steady_) {
       return;
     }
-    const Real now = energy(t);
+    const Real now = energy(t) - lifted_until(t);
     const Real flow = ledger_.flow();
     if (!std::isnan(before_)) {
       note(Fault::gains, t, now - before_, flow, verdict_.gains, look_.allowed.gains, "all");
@@ -570,6 +598,9 @@ class Judge {
   const Look& look_;
   bool steady_ = true;  ///< energy cannot come from anywhere
   Real before_ = std::numeric_limits<Real>::quiet_NaN();
+  std::map<Instant, Real> lifts_;
+  std::map<Instant, Real>::iterator next_lift_;
+  Real lifted_ = 0;
   std::size_t next_event_ = 0;
   std::set<Pair> stepped_over_;  ///< so far: which steps are implicit is not told one by one
   std::vector<Moment> at_;
