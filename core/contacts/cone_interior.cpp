@@ -1,10 +1,13 @@
 #include "core/contacts/cone_interior.hpp"
 
+#include "core/contacts/body_system.hpp"
+
 #include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -48,8 +51,10 @@ constexpr double compliance_along = 1e-12;
 struct Cone {
   Index at = 0;
   Index size = 1;
-  Matrix3d scale = Matrix3d::Identity();    ///< of Nesterov and Todd: scale x = unscale u
+  Index rows = 1;                         ///< with those along rough surfaces, which are in no cone
+  Matrix3d scale = Matrix3d::Identity();  ///< of Nesterov and Todd: scale x = unscale u
   Matrix3d unscale = Matrix3d::Identity();  ///< its inverse
+  Matrix3d lower = Matrix3d::Identity();    ///< what friction adds to rates along the normal
 };
 
 Vector3d part(const VectorXd& of, const Cone& cone) {
@@ -108,7 +113,7 @@ class Interior {
       const double unit = felt > 0.0 ? 1.0 / std::sqrt(felt) : 1.0;
       const double mu = friction[touch];
       const bool bounded = mu > 0.0 && !std::isinf(mu);
-      cones_.push_back({static_cast<Index>(row_.size()), bounded ? 3 : 1});
+      cones_.push_back({static_cast<Index>(row_.size()), bounded ? 3 : 1, mu > 0.0 ? 3 : 1});
       add(row, bounded ? unit / mu : unit);
       for (Index axis = 1; axis < 3 && mu > 0.0; ++axis) {
         if (!bounded) {
@@ -122,6 +127,14 @@ class Interior {
     H_ = unit.asDiagonal() * problem.W(row_, row_) * unit.asDiagonal();
     g_ = unit.cwiseProduct(problem.q(row_));
     rows_ = problem.q.size();
+    if (!problem.roots.empty()) {
+      VectorXd of_row = VectorXd::Zero(rows_);
+      of_row(row_) = unit;
+      bodies_.emplace(problem.roots, of_row);
+      if (bodies_->size() >= size) {
+        bodies_.reset();
+      }
+    }
     x_ = u_ = VectorXd::Zero(size);
     for (const Cone& cone : cones_) {
       x_[cone.at] = u_[cone.at] = std::max(g_.lpNorm<Eigen::Infinity>(), least_rate);
@@ -145,11 +158,13 @@ class Interior {
     const double now = left();
     VectorXd off = H_ * x_ + g_;
     MatrixXd K = H_;
-    for (const Cone& cone : cones_) {
+    for (Cone& cone : cones_) {
+      cone.lower = Matrix3d::Identity();
       if (cone.size == 3) {
         const Eigen::Vector2d slip = off.segment<2>(cone.at + 1);
         const double length = std::sqrt(slip.squaredNorm() + smoothing * now);
         off[cone.at] += length;
+        cone.lower.block<1, 2>(0, 1) = slip.transpose() / length;
         K.row(cone.at) += slip.transpose() / length * H_.middleRows<2>(cone.at + 1);
       }
     }
@@ -165,9 +180,9 @@ class Interior {
     for (const Index i : free_) {
       scaled(i, i) += compliance_along;
     }
-    const Eigen::ColPivHouseholderQR<MatrixXd> decomposition(scaled);
+    const Decomposed system(*this, scaled);
     const auto way = [&](const VectorXd& pulls) {
-      Way found{decomposition.solve(pulls - off), VectorXd()};
+      Way found{system.solve(pulls - off), VectorXd()};
       found.u = K * found.x + off;
       for (const Index i : free_) {
         found.u[i] = 0.0;
@@ -201,6 +216,55 @@ class Interior {
 
  private:
   static constexpr double least_rate = std::numeric_limits<double>::min();
+
+  /// What a step solves: by bodies if it can be, and else as it is.
+  class Decomposed {
+   public:
+    Decomposed(Interior& of, const MatrixXd& matrix) : of_(of), matrix_(matrix) {
+      if (!of.bodies_) {
+        return;
+      }
+      std::vector<Matrix3d> inverse;
+      std::vector<Matrix3d> lower;
+      for (const Cone& cone : of.cones_) {
+        inverse.push_back(Matrix3d::Zero());
+        inverse.back().topLeftCorner(cone.size, cone.size) =
+            (cone.unscale * cone.unscale).topLeftCorner(cone.size, cone.size);
+        for (Index i = cone.size; i < cone.rows; ++i) {
+          inverse.back()(i, i) = 1.0 / compliance_along;
+        }
+        lower.push_back(cone.lower);
+      }
+      of.bodies_->decompose(std::move(inverse), lower);
+    }
+
+    [[nodiscard]] VectorXd solve(const VectorXd& b) const {
+      if (of_.bodies_) {
+        if (auto x =
+                refined(matrix_, b, exactly, [&](const VectorXd& c) { return by_bodies(c); })) {
+          return *std::move(x);
+        }
+      }
+      if (whole_.rows() == 0) {
+        whole_.compute(matrix_);
+      }
+      return whole_.solve(b);
+    }
+
+   private:
+    /// What is left of a step, the next one takes.
+    static constexpr double exactly = 1e-5;
+
+    [[nodiscard]] VectorXd by_bodies(const VectorXd& b) const {
+      VectorXd rows = VectorXd::Zero(of_.rows_);
+      rows(of_.row_) = b;
+      return of_.bodies_->solve(rows)(of_.row_);
+    }
+
+    const Interior& of_;
+    const MatrixXd& matrix_;
+    mutable Eigen::ColPivHouseholderQR<MatrixXd> whole_;
+  };
 
   /// False: rounding has taken impulses or rates to an edge.
   bool find_scale(Cone& cone) const {
@@ -249,6 +313,7 @@ class Interior {
   VectorXd x_;
   VectorXd u_;
   Index rows_ = 0;  ///< of the problem
+  std::optional<BodySystem> bodies_;
 };
 
 /// To roundoff from impulses that are near.
@@ -267,7 +332,9 @@ ConeImpulses polished(const ConeProblem& problem, const ConeProjections& project
   };
   const double compliance = proximal * problem.W.diagonal().mean();
   for (int round = 0; round < most_rounds && nearest.off > settled; ++round) {
-    take(nearest.impulse - projections.newton_step(nearest.impulse));
+    if (round > 0 || problem.roots.empty()) {
+      take(nearest.impulse - projections.newton_step(nearest.impulse));
+    }
     if (nearest.off <= settled) {
       break;
     }

@@ -1,6 +1,9 @@
 #include "core/contacts/cone_problem.hpp"
 
+#include "core/contacts/body_system.hpp"
 #include "core/contacts/least_norm.hpp"
+
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +13,7 @@ inline namespace core {
 namespace {
 
 using Eigen::Matrix2d;
+using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -22,6 +26,7 @@ Eigen::Index place(std::size_t k) { return 3 * static_cast<Eigen::Index>(k); }
 ConeProblem held_near(const ConeProblem& problem, const VectorXd& p, double compliance) {
   ConeProblem held = problem;
   held.W.diagonal().array() += compliance;
+  held.compliance += compliance;
   held.q -= compliance * p;
   return held;
 }
@@ -60,50 +65,81 @@ VectorXd ConeProjections::off(const VectorXd& p) const {
   return F;
 }
 
-MatrixXd ConeProjections::change(const VectorXd& p) const {
+std::vector<ConeProjections::Slope> ConeProjections::slopes(const VectorXd& p) const {
   const VectorXd u = of_.W * p + of_.q;
-  MatrixXd J(p.size(), p.size());
+  std::vector<Slope> out;
   for (std::size_t k = 0; k < felt_.size(); ++k) {
     const Eigen::Index at = place(k);
     const Vector3d pk = p.segment<3>(at);
     const Vector3d z = felt_[k] * pk - u.segment<3>(at);
-    auto rows = J.middleRows<3>(at);
-    rows = of_.W.middleRows<3>(at);
-    const auto keeps = [&](Eigen::Index r) {
-      rows.row(r).setZero();
-      rows(r, at + r) = felt_[k];
-    };
+    const double mu = of_.friction[k];
+    Slope slope;
     switch (state(k, pk, u.segment<3>(at), z)) {
       case Does::opens:
-        keeps(0);
-        keeps(1);
-        keeps(2);
+        slope.impulse.diagonal().setConstant(felt_[k]);
         break;
       case Does::holds_along:
-        keeps(0);
+        slope.impulse(0, 0) = felt_[k];
+        slope.rates(1, 1) = slope.rates(2, 2) = 1.0;
         break;
       case Does::sticks:
+        slope.rates.setIdentity();
         break;
       case Does::slides: {
-        // d z = felt d p - W d p
-        MatrixXd dz = -of_.W.middleRows<3>(at);
-        dz.middleCols<3>(at).diagonal().array() += felt_[k];
         const double length = z.tail<2>().norm();
         const Vector2d d = z.tail<2>() / length;
-        const Matrix2d turn =
-            of_.friction[k] * z[0] / length * (Matrix2d::Identity() - d * d.transpose());
-        rows.bottomRows<2>() = -of_.friction[k] * d * dz.row(0) - turn * dz.bottomRows<2>();
-        rows(1, at + 1) += felt_[k];
-        rows(2, at + 2) += felt_[k];
+        const Matrix2d turn = mu * z[0] / length * (Matrix2d::Identity() - d * d.transpose());
+        slope.rates(0, 0) = 1.0;
+        slope.rates.bottomLeftCorner<2, 1>() = mu * d;
+        slope.rates.bottomRightCorner<2, 2>() = turn;
+        slope.impulse.bottomLeftCorner<2, 1>() = -felt_[k] * mu * d;
+        slope.impulse.bottomRightCorner<2, 2>() = felt_[k] * (Matrix2d::Identity() - turn);
       }
     }
+    out.push_back(slope);
+  }
+  return out;
+}
+
+/// The derivative of `off`.
+MatrixXd ConeProjections::change(const std::vector<Slope>& slopes) const {
+  MatrixXd J(of_.q.size(), of_.q.size());
+  for (std::size_t k = 0; k < slopes.size(); ++k) {
+    const Eigen::Index at = place(k);
+    J.middleRows<3>(at) = slopes[k].rates.lazyProduct(of_.W.middleRows<3>(at));
+    J.block<3, 3>(at, at) += slopes[k].impulse;
   }
   return J;
 }
 
+std::optional<VectorXd> ConeProjections::step_by_bodies(const std::vector<Slope>& slopes,
+                                                        const MatrixXd& J,
+                                                        const VectorXd& F) const {
+  if (of_.roots.empty() || !(of_.compliance > 0.0)) {
+    return std::nullopt;
+  }
+  BodySystem bodies(of_.roots, VectorXd::Ones(F.size()));
+  if (bodies.size() >= F.size()) {
+    return std::nullopt;
+  }
+  std::vector<Matrix3d> inverse;
+  std::vector<Matrix3d> rates;
+  for (const Slope& slope : slopes) {
+    inverse.emplace_back((slope.impulse + of_.compliance * slope.rates).inverse());
+    rates.push_back(slope.rates);
+  }
+  bodies.decompose(std::move(inverse), rates);
+  constexpr double enough = 1e-10;
+  return refined(J, F, enough, [&](const VectorXd& b) { return bodies.solve(b); });
+}
+
 VectorXd ConeProjections::newton_step(const VectorXd& p) const {
-  const MatrixXd J = change(p);
+  const std::vector<Slope> of_touches = slopes(p);
+  const MatrixXd J = change(of_touches);
   const VectorXd F = off(p);
+  if (auto step = step_by_bodies(of_touches, J, F)) {
+    return *std::move(step);
+  }
   VectorXd step = VectorXd::Zero(F.size());
   // What opens has rows with nothing but an element of its own: it is known, and the others' system
   // is smaller without it.

@@ -2,10 +2,12 @@
 
 #include "core/contacts/coulomb_cone.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 namespace kairos {
@@ -91,6 +93,12 @@ class Trial {
 
 ContactSweeps::ContactSweeps(std::span<const GroupBody> bodies,
                              std::span<const SweptTouch> touches) {
+  std::vector<Matrix3> turns;  // roots of inverse inertias
+  for (const GroupBody& body : bodies) {
+    turns.push_back(body.inverse_inertia.isZero(0.0)
+                        ? Matrix3(Matrix3::Zero())
+                        : Matrix3(body.inverse_inertia.llt().matrixL()));
+  }
   for (const SweptTouch& touch : touches) {
     Block out;
     out.a = touch.a;
@@ -100,16 +108,17 @@ ContactSweeps::ContactSweeps(std::span<const GroupBody> bodies,
     const Vector3 t = n.unitOrthogonal();
     out.axes << n.transpose(), t.transpose(), n.cross(t).transpose();
     const auto side = [&](std::size_t i, const Vector3& point, double sign, Matrix36& of,
-                          Matrix63& to) {
+                          Matrix63& to, Matrix36& root) {
       for (int r = 0; r < 3; ++r) {
         const Vector3 d = sign * out.axes.row(r);
         const Vector3 moment = (point - bodies[i].position).cross(d);
         of.row(r) << d.transpose(), moment.transpose();
         to.col(r) << bodies[i].inverse_mass * d, bodies[i].inverse_inertia * moment;
       }
+      root << std::sqrt(bodies[i].inverse_mass) * of.leftCols<3>(), of.rightCols<3>() * turns[i];
     };
-    side(touch.a, touch.point_a, -1.0, out.of_a, out.to_a);
-    side(touch.b, touch.point_b, 1.0, out.of_b, out.to_b);
+    side(touch.a, touch.point_a, -1.0, out.of_a, out.to_a, out.root_a);
+    side(touch.b, touch.point_b, 1.0, out.of_b, out.to_b, out.root_b);
     out.W = out.of_a * out.to_a + out.of_b * out.to_b;
     blocks_.push_back(out);
   }

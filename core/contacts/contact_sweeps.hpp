@@ -67,8 +67,9 @@ class ContactSweeps {
     std::size_t a = 0;
     std::size_t b = 0;
     Eigen::Matrix3d axes;
-    Matrix36 of_a, of_b;  ///< J
-    Matrix63 to_a, to_b;  ///< M^-1 J^T
+    Matrix36 of_a, of_b;      ///< J
+    Matrix63 to_a, to_b;      ///< M^-1 J^T
+    Matrix36 root_a, root_b;  ///< J M^(-1/2)
     Matrix3 W;
     double friction = 0.0;
   };

@@ -91,6 +91,7 @@ double ContactSweeps::settle_at_once(const std::vector<Vector6>& free,
     problem.q.segment<3>(at) = rate_of(k, free, rates);
     problem.friction.push_back(rubs ? blocks_[k].friction : 0.0);
     begin.segment<3>(at) = along[k];
+    problem.roots.push_back({blocks_[k].a, blocks_[k].b, blocks_[k].root_a, blocks_[k].root_b});
     for (std::size_t l = 0; l < n; ++l) {
       problem.W.block<3, 3>(at, static_cast<Index>(3 * l)) = coupling(k, l);
     }

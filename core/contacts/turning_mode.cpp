@@ -462,6 +462,32 @@ void displace(const ContactSystem& rows, const Eigen::VectorXd& impulses, Turnin
   }
 }
 
+/// The same as by Lemke's method by sweeps, which get on where many touches are redundant: as near
+/// as gaps need to be told.
+Complementarity clear_by_sweeps(const TurningState& state, const ContactSystem& rows,
+                                const Eigen::VectorXd& off) {
+  std::vector<SweptTouch> touches;
+  std::vector<Vector3> rates;
+  for (std::size_t k = 0; k < rows.rows.size(); ++k) {
+    const ContactRow& row = rows.rows[k];
+    touches.push_back({row.a, row.b, row.direction, rows.bodies[row.a].position + row.arm_a,
+                       rows.bodies[row.b].position + row.arm_b, 0.0});
+    rates.emplace_back(off[static_cast<Eigen::Index>(k)], 0.0, 0.0);
+  }
+  const double settled = 1e-6 * off.lpNorm<Eigen::Infinity>();
+  const auto swept = ContactSweeps(state.bodies, touches)
+                         .sweep(std::vector<ContactSweeps::Vector6>(state.bodies.size(),
+                                                                    ContactSweeps::Vector6::Zero()),
+                                rates, {}, settled, false);
+  Complementarity found;
+  found.solved = swept.changed <= 100.0 * settled;
+  found.x.resize(off.size());
+  for (std::size_t k = 0; k < touches.size(); ++k) {
+    found.x[static_cast<Eigen::Index>(k)] = touches[k].normal.dot(swept.impulse[k]);
+  }
+  return found;
+}
+
 }  // namespace
 
 bool put_clear(TurningState& state) {
@@ -475,7 +501,10 @@ bool put_clear(TurningState& state) {
     all.rows.push_back(row_of(state, touch, now, now.normal));
     off[static_cast<Eigen::Index>(k)] = now.gap - touch.gap;
   }
-  const Complementarity found = solve_complementarity(all.coupling(), off);
+  Complementarity found = solve_complementarity(all.coupling(), off);
+  if (!found.solved && state.joints == nullptr) {
+    found = clear_by_sweeps(state, all, off);
+  }
   if (found.solved) {
     displace(all, found.x, state);
   }

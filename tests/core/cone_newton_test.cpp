@@ -2,14 +2,18 @@
 
 #include "core/contacts/cone_newton.hpp"
 
+#include "core/contacts/body_system.hpp"
 #include "core/contacts/cone_interior.hpp"
 #include "core/contacts/contact_sweeps.hpp"
 #include "core/contacts/contact_system.hpp"
 #include "core/random.hpp"
 #include "tests/catch.hpp"
 
+#include <Eigen/LU>
+
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -76,9 +80,20 @@ ConeProblem wall(int wide, int high, Random& random) {
     const Vector3 s = n.cross(t);
     for (const auto& [x, y] : {std::pair{-0.5, -0.5}, {-0.5, 0.5}, {0.5, 0.5}, {0.5, -0.5}}) {
       problem.friction.push_back(mu);
+      ConeRoot root{a, b};
+      Eigen::Index r = 0;
       for (const Vector3& d : {n, t, s}) {
-        system.add(a, b, middle + x * t + y * s, d);
+        const Vector3 at = middle + x * t + y * s;
+        system.add(a, b, at, d);
+        for (const auto& [i, sign, of] : {std::tuple{a, -1.0, &root.of_a}, {b, 1.0, &root.of_b}}) {
+          const GroupBody& body = system.bodies[i];
+          of->row(r).head<3>() = sign * std::sqrt(body.inverse_mass) * d;
+          of->row(r).tail<3>() =
+              sign * std::sqrt(body.inverse_inertia(0, 0)) * (at - body.position).cross(d);
+        }
+        ++r;
       }
+      problem.roots.push_back(root);
     }
   };
   for (std::size_t i = 0; i < cubes; ++i) {
@@ -209,6 +224,67 @@ TEST_CASE("an interior-point method finds the impulses of walls that Newton's me
   // Either may get nowhere, and tells its best then: none here, and 13 times of 30.
   CHECK(newton < found);
   CHECK(found >= trials - 2);
+}
+
+TEST_CASE("systems of touches are solved by their bodies as they are as a whole", "[friction]") {
+  Random random(20261130);
+  for (int trial = 0; trial < 60; ++trial) {
+    const ConeProblem problem = wall(1 + trial % 4, 1 + trial % 3, random);
+    const auto rows = problem.q.size();
+    Eigen::VectorXd unit(rows);
+    std::vector<Eigen::Matrix3d> own, inverse, lower;
+    Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(rows, rows);
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      unit[i] = i % 7 == 3 ? 0.0 : random.uniform(0.5, 2.0);
+    }
+    const Eigen::MatrixXd W = unit.asDiagonal() * problem.W * unit.asDiagonal();
+    for (Eigen::Index at = 0; at < rows; at += 3) {
+      Eigen::Matrix3d A, L;
+      for (Eigen::Index i = 0; i < 9; ++i) {
+        A(i / 3, i % 3) = random.uniform(-1.0, 1.0);
+      }
+      for (Eigen::Index i = 0; i < 9; ++i) {
+        L(i / 3, i % 3) = random.uniform(-1.0, 1.0);
+      }
+      own.emplace_back(A * A.transpose() + 0.1 * Eigen::Matrix3d::Identity());
+      inverse.emplace_back(own.back().inverse());
+      lower.emplace_back(Eigen::Matrix3d::Identity() + 0.1 * L);
+      whole.middleRows<3>(at) = lower.back() * W.middleRows<3>(at);
+      whole.block<3, 3>(at, at) += own.back();
+    }
+    BodySystem bodies(problem.roots, unit);
+    bodies.decompose(inverse, lower);
+    const Eigen::VectorXd x = bodies.solve(problem.q);
+    CAPTURE(trial, rows, bodies.size());
+    // D is at least 0.1, and masses are up to 30: conditions up to 1e4 or so.
+    CHECK((whole * x - problem.q).norm() <= 1e-11 * whole.norm() * (1.0 + x.norm()));
+    // Roundoff of products of 100 and 100.
+    const auto again =
+        refined(whole, problem.q, 1e-12, [&](const Eigen::VectorXd& b) { return bodies.solve(b); });
+    CHECK(again.has_value());
+  }
+}
+
+TEST_CASE("an interior-point method by bodies finds what it finds as a whole", "[friction]") {
+  Random random(20261201);
+  int by_bodies = 0;
+  int whole = 0;
+  for (int trial = 0; trial < 24; ++trial) {
+    ConeProblem problem = wall(1 + trial % 3, 1 + trial % 4, random);
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(problem.q.size());
+    const ConeImpulses found = cone_interior(problem, none, 1e-10);
+    by_bodies += found.off <= 1e-10 ? 1 : 0;
+    problem.roots.clear();
+    const ConeImpulses other = cone_interior(problem, none, 1e-10);
+    whole += other.off <= 1e-10 ? 1 : 0;
+    if (found.off <= 1e-10 && other.off <= 1e-10) {
+      // Impulses may be shared differently; what they do to the rates is the same where friction
+      // leaves no choice, and keeps the law either way.
+      CHECK(keeps_the_law(problem, found.impulse, 1e-8 * (1.0 + found.impulse.norm())));
+    }
+  }
+  CAPTURE(by_bodies, whole);
+  CHECK(by_bodies >= whole - 1);
 }
 
 TEST_CASE("among redundant touches an interior-point method shares alike", "[friction]") {

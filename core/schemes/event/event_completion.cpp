@@ -18,7 +18,8 @@ using Vector6 = ContactSweeps::Vector6;
 /// Of the fastest: sweeps that change less have settled; those that change more have not.
 constexpr double settled = 1e-13;
 constexpr double accepted = 1e-8;
-/// Of the speed of an impact, and of what is not returned: what is left is plastic.
+/// Of the speed of an impact, and of what touches on average do not return: what is left is
+/// plastic.
 constexpr double nearly_handed_on = 0.1;
 /// What was pushed apart and comes together again and again gets nowhere: so often in a frame.
 constexpr int most_pushes = 1000;
@@ -128,7 +129,7 @@ std::vector<BodyIndex> EventContacts::hand_on_at_once(const Event& first,
   if (driven || impact.restitution.size() == 0) {
     return {};
   }
-  const double e = impact.restitution.maxCoeff();
+  const double e = impact.restitution.mean();
   if (e > 0.0 && !(part <= nearly_handed_on * (1.0 - e))) {
     return {};
   }
@@ -256,10 +257,13 @@ std::vector<BodyIndex> EventContacts::give(const EventModes::GroupImpact& impact
 }
 
 /// What impulses did: p (u- + u+) / 2, along the normals (in this line of the ledger) and across,
-/// beside what driven bodies did.
+/// beside what driven bodies did. Together they never gave. Where one of the two would have given,
+/// as friction does by this formula where others turned the slip against it, the other has less.
 void EventContacts::book_pushes(const EventModes::GroupImpact& impact, const Pushes& pushes,
                                 EnergyLine normal) {
   const ContactSweeps::Swept& swept = pushes.swept;
+  double whole = 0.0;
+  double across = 0.0;
   for (std::size_t r = 0; r < pushes.touches.size(); ++r) {
     const SweptTouch& touch = pushes.touches[r];
     const Vector3& p = swept.impulse[r];
@@ -273,8 +277,8 @@ void EventContacts::book_pushes(const EventModes::GroupImpact& impact, const Pus
     };
     const Vector3 mean = 0.5 * (slip(pushes.before) + slip(swept.velocities));
     const Vector3 along = touch.normal * touch.normal.dot(p);
-    run_.ledger.add(normal, along.dot(mean));
-    run_.ledger.add(EnergyLine::impact_friction, (p - along).dot(mean));
+    whole += p.dot(mean);
+    across += (p - along).dot(mean);
     for (const auto& [k, point, sign] :
          {std::tuple{touch.a, touch.point_a, 1.0}, {touch.b, touch.point_b, -1.0}}) {
       if (run_.model.mobility(impact.bodies[k]) == Mobility::driven) {
@@ -282,6 +286,9 @@ void EventContacts::book_pushes(const EventModes::GroupImpact& impact, const Pus
       }
     }
   }
+  across = std::min(std::max(across, whole), 0.0);
+  run_.ledger.add(normal, whole - across);
+  run_.ledger.add(EnergyLine::impact_friction, across);
 }
 
 }  // namespace core

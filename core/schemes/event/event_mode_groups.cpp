@@ -42,6 +42,10 @@ double press_what_contradicts(const ContactSystem& held, std::span<const double>
   return held.driven_work(-pull.x);
 }
 
+/// What is this many times as far away as what touches may come to touch where gaps are made
+/// larger.
+constexpr double far_away = 8.0;
+
 double finite_radius(const Shape& shape) {
   const double radius = bounding_radius(shape);
   return std::isfinite(radius) ? radius : 0.0;
@@ -217,7 +221,8 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
       const BodyState at_b = state_of(b);
       const double radii =
           bounding_radius(run_.model.shape(a)) + bounding_radius(run_.model.shape(b));
-      const double reach = predictor_.touching_gap(a, b);
+      const double touching = predictor_.touching_gap(a, b);
+      const double reach = options.far ? far_away * touching : touching;
       const bool joined = graph_.joins(a, b);
       if (joined && !found.has(j)) {
         add(j);  // the end of the pair is recorded, whatever becomes of it
@@ -250,8 +255,13 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
           options.turning ? least > slow || most < -slow : least < -slow || most > slow;
       const bool apart = std::find(options.apart.begin(), options.apart.end(), BodyPair{a, b}) !=
                          options.apart.end();
+      double nearest = infinity;
+      for (std::size_t p = 0; p < manifold.size; ++p) {
+        nearest = std::min(nearest, manifold.points[p].gap);
+      }
+      const bool beside = options.far && nearest > touching;
       const bool passes = options.impact ? least > slow || (options.held_only && !joined && !struck)
-                                         : elsewhere || apart;
+                                         : elsewhere || apart || beside;
       if (passes && !options.near) {
         continue;  // an impact of its own, or parting
       }

@@ -117,7 +117,10 @@ bool EventModes::settle_once(std::span<const BodyIndex> seeds, Instant t, const 
   if (options.turning_only && !has_turned(seeds)) {
     return false;
   }
-  if (options.not_flat) {
+  // What is stepped over hardly comes to lie flat from step to step.
+  constexpr int tries_flat_every = 16;
+  const bool steps_over = !options.unite && implicit_steps(found).first % tries_flat_every != 0;
+  if (options.not_flat || steps_over) {
     return settle_turning(seeds, t, adopt, options);
   }
   if (!found.hangs.empty()) {

@@ -44,6 +44,7 @@ class EventModes {
     bool turning = false;                  ///< pairs of which some points are at rest, too
     bool turning_only = false;             ///< only if it turns
     bool near = false;                     ///< what is in touch and not at rest, too
+    bool far = false;                      ///< near: what is a little further away, too
     std::span<const BodyPair> apart = {};  ///< unite: what parts, however slowly
     /// What cannot go on otherwise may turn: the run would stop. What has turned may always.
     bool may_turn = false;

@@ -19,6 +19,8 @@ constexpr double implicit_part = 1.0 / 16.0;
 constexpr int first_stretch = 16;
 constexpr int longest_stretch = 1024;
 constexpr int most_halvings = 30;
+/// Where impulses of a step are not found, those of one half as long may be: so often.
+constexpr int most_refused = 4;
 /// What ends a step after less than this part of it strikes at once.
 constexpr double least_part = 1e-9;
 
@@ -70,6 +72,7 @@ bool EventModes::step_over(const Gathered& found, Turning& turning, Instant t,
   const double before = implicit_steps(found).second > 0 ? next_step(found) : frame;
   double h = std::min({implicit_part * frame, run_.epoch_end() - t, before});
   bool halved = false;
+  int refused = 0;
   for (int round = 0; round < most_halvings; ++round, h *= 0.5, halved = true) {
     turning.mode = implicit_mode(turning.group.start, h, warm, asked.last_resort,
                                  asked.last_resort ? 0 : halvings(found, t, &Turned::unsettled));
@@ -77,7 +80,10 @@ bool EventModes::step_over(const Gathered& found, Turning& turning, Instant t,
     turning.mode.keeps_all = turning.all;
     run_.cost.contact_solves += turning.mode.solves;
     if (!turning.mode.refusal.empty()) {
-      break;
+      if (++refused > most_refused) {
+        break;
+      }
+      continue;
     }
     if (turning.mode.flies && !turning.all) {
       return true;

@@ -10,13 +10,21 @@
 
 namespace kairos {
 inline namespace core {
+namespace {
+
+/// What touches, and has been made to touch less, is no further away than this times what touches.
+constexpr double nearly_touching = 1.25;
+
+}  // namespace
 
 /// Gathers what touches, with gaps that can be held. Where that brings one nearer to what passes
-/// by, this makes way, too; and where that does not help, gaps may be larger than they need to be.
+/// by, this makes way, too; and where that does not help, gaps may be larger than they need to be,
+/// and what is near without a touch keeps clear.
 bool EventModes::make_room(std::span<const BodyIndex> seeds, Instant t, SettleOptions options,
                            Gathered& found, Turning& turning) {
   for (const auto& [near, at_least] : {std::pair{false, false}, {true, false}, {true, true}}) {
     options.near = near;
+    options.far = at_least;
     found = gather(seeds, t, options);
     turning = {};
     why_not_ = found.refusal.empty() ? why_not_turn(found, t) : found.refusal;
@@ -43,7 +51,8 @@ void EventModes::lift(Gathered& found, Turning& turning, Instant t, bool at_leas
   raise(found, turning, t, at_least);
   std::erase_if(start.touches, [&](const Touch& touch) {
     const TouchNow now = look_at(touch, start.states[touch.a], start.states[touch.b]);
-    return found.passes[touch.pair] != 0 ||
+    const double touching = predictor_.touching_gap(found.bodies[touch.a], found.bodies[touch.b]);
+    return found.passes[touch.pair] != 0 || now.gap > nearly_touching * touching ||
            std::abs(now.normal.dot(now.velocity)) > found.group.patches[touch.pair].rest_speed;
   });
 }
