@@ -490,16 +490,22 @@ Complementarity clear_by_sweeps(const TurningState& state, const ContactSystem& 
 
 }  // namespace
 
-bool put_clear(TurningState& state) {
+bool put_clear(TurningState& state, std::span<const Clearance> others) {
   ContactSystem all;
   all.bodies = state.bodies;
   all.joints = state.joints;
-  Eigen::VectorXd off(static_cast<Eigen::Index>(state.touches.size()));
+  const auto touches = static_cast<Eigen::Index>(state.touches.size());
+  Eigen::VectorXd off(touches + static_cast<Eigen::Index>(others.size()));
   for (std::size_t k = 0; k < state.touches.size(); ++k) {
     const Touch& touch = state.touches[k];
     const TouchNow now = look_at(touch, state.states[touch.a], state.states[touch.b]);
     all.rows.push_back(row_of(state, touch, now, now.normal));
     off[static_cast<Eigen::Index>(k)] = now.gap - touch.gap;
+  }
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    const Clearance& other = others[k];
+    all.add(other.a, other.b, other.point, other.normal);
+    off[touches + static_cast<Eigen::Index>(k)] = -other.missing;
   }
   Complementarity found = solve_complementarity(all.coupling(), off);
   if (!found.solved && state.joints == nullptr) {

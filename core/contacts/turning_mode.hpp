@@ -3,6 +3,7 @@
 #include "core/contacts/turning_forces.hpp"
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -59,9 +60,18 @@ struct Parting {
 /// `moves` holds are what they are to be; first order in what they are off by.
 void put_at_gaps(TurningState& state, const std::vector<char>& moves);
 
-/// The same, so that no gap is less than it is to be; false, and nothing is moved, where it is not
-/// known how.
-[[nodiscard]] bool put_clear(TurningState& state);
+/// Along a normal from a to b, at a point, a gap is to grow by this much at least, m.
+struct Clearance {
+  std::size_t a = 0;
+  std::size_t b = 0;
+  Vector3 point = Vector3::Zero();
+  Vector3 normal = Vector3::Zero();
+  double missing = 0.0;
+};
+
+/// The same, so that no gap is less than it is to be, nor along others; false, and nothing is
+/// moved, where it is not known how.
+[[nodiscard]] bool put_clear(TurningState& state, std::span<const Clearance> others);
 
 }  // namespace core
 }  // namespace kairos

@@ -626,7 +626,7 @@ void EventContacts::Touching::persist(Archive& archive) { archive(settled, conta
 void EventContacts::persist(Archive& archive) {
   std::size_t n = touching_.size();
   archive.count(n);
-  archive(stalled_, stalled_at_, pushed_, pushed_in_);
+  archive(stalled_, stalled_at_, pushed_, pushed_in_, struck_by_, struck_at_);
   if (archive.reading()) {
     for (std::size_t k = 0; k < n; ++k) {
       BodyIndex i = 0;

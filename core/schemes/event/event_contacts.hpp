@@ -139,6 +139,8 @@ class EventContacts {
   void settle(BodyIndex ball, const Support& support, double pressing, double e, Instant t);
   void resume_support(BodyIndex i, Instant t);
   void follow(BodyIndex ball, const Support& support, Instant t);
+  [[nodiscard]] bool is_nothing(BodyIndex a, BodyIndex b, double speed) const;
+  void lay_still(BodyIndex a, BodyIndex b);
   [[nodiscard]] double leaving_speed(BodyIndex ball, const Support& support, Instant t) const;
   void depart(BodyIndex a, BodyIndex b, Instant t);
   void relaunch(BodyIndex a, BodyIndex b, Instant t);
@@ -160,6 +162,8 @@ class EventContacts {
   Instant stalled_at_ = Instant::never();
   int pushed_ = 0;           ///< how often impacts were ended by pushing, in the frame `pushed_in_`
   double pushed_in_ = -1.0;  ///< counted from the start of the run
+  double struck_by_ = 0.0;   ///< the fastest approach of those that struck at `struck_at_`, m/s
+  Instant struck_at_ = Instant::never();
 };
 
 }  // namespace core

@@ -27,6 +27,11 @@ constexpr std::size_t most_rounds = 1000;
 /// After so many rounds for each of them, what is left is looked for at once.
 constexpr std::size_t few_rounds = 4;
 
+/// What approaches by less than this part of the fastest that struck at the instant is nothing, if
+/// both move by less than `still` of it: pairs hand impacts to and fro that no coordinate tells.
+constexpr double nothing = 0x1p-120;
+constexpr double still = 0x1p-80;
+
 /// The two that began an impact strike where they came together. What is in touch at one point of a
 /// corner may part at another, whose normal is not the same.
 void strike_where_met(const Event& first, double restitution, EventModes::GroupImpact& impact) {
@@ -212,6 +217,14 @@ void EventContacts::meet(Event& event, Instant t) {
   const auto [a, b] = std::pair{event.a, event.b};
   const std::array<BodyIndex, 2> pair{a, b};
   const double approach = normal_velocity(event.contact, motions_.now(a), motions_.now(b));
+  struck_by_ = struck_at_ == t ? std::max(struck_by_, -approach) : -approach;
+  struck_at_ = t;
+  if (is_nothing(a, b, -approach)) {
+    const std::vector<BodyIndex> bodies = modes_.group(pair);
+    modes_.bring_group(bodies, t);
+    lay_still(a, b);
+    return settle(bodies, t, {.may_turn = true}) ? void() : set_free(bodies, t);
+  }
   if (strike_group(event, std::max(-approach, 0.0))) {
     return;
   }
@@ -222,6 +235,29 @@ void EventContacts::meet(Event& event, Instant t) {
   }
   strike(event);
   go_on_struck(event, approach, std::move(group), t);
+}
+
+/// Whether an approach at this speed, m/s, is nothing beside what struck at this instant.
+bool EventContacts::is_nothing(BodyIndex a, BodyIndex b, double speed) const {
+  const auto is_still = [&](BodyIndex i) {
+    const Twist& v = motions_.now(i).twist;
+    return v.linear.norm() + v.angular.norm() * run_.model.inertia(i).bounding_radius <=
+           still * struck_by_;
+  };
+  return speed <= nothing * struck_by_ && (!run_.model.is_free(a) || is_still(a)) &&
+         (!run_.model.is_free(b) || is_still(b));
+}
+
+void EventContacts::lay_still(BodyIndex a, BodyIndex b) {
+  for (const BodyIndex i : {a, b}) {
+    if (run_.model.is_free(i)) {
+      BodyState& now = motions_.now(i);
+      const BodyState before = now;
+      now.twist = {};
+      run_.ledger.add(EnergyLine::zeno_completion, run_.account.gained(i, before, now));
+      run_.account.struck(i, before, now);
+    }
+  }
 }
 
 /// The two have struck each other, which they met at this rate; `group`: those that they touch.
@@ -605,6 +641,10 @@ void EventContacts::hand_on(const Event& first, double approach, std::vector<Bod
         continue;
       }
       at_once *= 2;
+    }
+    if (is_nothing(worst->a, worst->b, worst->speed)) {
+      lay_still(worst->a, worst->b);
+      continue;
     }
     Event event{.time = t,
                 .kind = EventKind::impact,

@@ -141,6 +141,11 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
            std::any_of(island.bodies.begin(), island.bodies.end(), is_seed);
   };
   const auto state_of = [&](BodyIndex i) {
+    const auto elsewhere = std::find_if(options.moved.begin(), options.moved.end(),
+                                        [&](const auto& of) { return of.first == i; });
+    if (elsewhere != options.moved.end()) {
+      return elsewhere->second;
+    }
     const bool known = is_seed(i) || run_.model.mobility(i) == Mobility::fixed || hangs_on_seed(i);
     return known ? motions_.now(i) : motions_.at(i, t);
   };

@@ -17,6 +17,9 @@
 namespace kairos {
 inline namespace core {
 
+struct Clearance;
+struct TurningGroup;
+
 /// Contact that lasts among several bodies: who holds whom, since when, and until what happens.
 ///
 /// A group of bodies in touch is *settled*: `flat_mode` says who presses, and that nothing turns
@@ -46,6 +49,8 @@ class EventModes {
     bool near = false;                     ///< what is in touch and not at rest, too
     bool far = false;                      ///< near: what is a little further away, too
     std::span<const BodyPair> apart = {};  ///< unite: what parts, however slowly
+    /// Bodies that are taken to be elsewhere.
+    std::span<const std::pair<BodyIndex, BodyState>> moved = {};
     /// What cannot go on otherwise may turn: the run would stop. What has turned may always.
     bool may_turn = false;
     bool may_part = true;   ///< may_turn: what nothing presses goes on by itself
@@ -221,6 +226,8 @@ class EventModes {
                                Gathered& found, Turning& turning);
   void lift(Gathered& found, Turning& turning, Instant t, bool at_least);
   void raise(Gathered& found, Turning& turning, Instant t, bool at_least);
+  [[nodiscard]] std::vector<Clearance> beside_touches(const Gathered& found,
+                                                      const TurningGroup& group) const;
   [[nodiscard]] static bool let_hop(Turning& turning, double roundoff);
   void let_jam(const Gathered& found, Turning& turning, Instant t, double still);
   void tell_jam(const Gathered& found, const Turning& turning, Instant t);

@@ -19,12 +19,17 @@ constexpr double nearly_touching = 1.25;
 
 /// Gathers what touches, with gaps that can be held. Where that brings one nearer to what passes
 /// by, this makes way, too; and where that does not help, gaps may be larger than they need to be,
-/// and what is near without a touch keeps clear.
+/// and what is near without a touch keeps clear: again from where that led, as corners may have
+/// come to touch elsewhere.
 bool EventModes::make_room(std::span<const BodyIndex> seeds, Instant t, SettleOptions options,
                            Gathered& found, Turning& turning) {
-  for (const auto& [near, at_least] : {std::pair{false, false}, {true, false}, {true, true}}) {
+  std::vector<std::pair<BodyIndex, BodyState>> was;
+  std::vector<std::pair<BodyIndex, BodyState>> moved;
+  for (const auto& [near, at_least] :
+       {std::pair{false, false}, {true, false}, {true, true}, {true, true}, {true, true}}) {
     options.near = near;
     options.far = at_least;
+    options.moved = moved;
     found = gather(seeds, t, options);
     turning = {};
     why_not_ = found.refusal.empty() ? why_not_turn(found, t) : found.refusal;
@@ -34,10 +39,21 @@ bool EventModes::make_room(std::span<const BodyIndex> seeds, Instant t, SettleOp
     if (!why_not_.empty()) {
       return false;
     }
-    const std::vector<BodyState> before = found.states;
+    std::vector<BodyState> before = found.states;
+    for (std::size_t k = 0; k < before.size(); ++k) {
+      const auto first = std::find_if(was.begin(), was.end(),
+                                      [&](const auto& of) { return of.first == found.bodies[k]; });
+      before[k] = first != was.end() ? first->second : before[k];
+    }
     lift(found, turning, t, at_least);
     if (has_room(before, found, t)) {
       return true;
+    }
+    was.clear();
+    moved.clear();
+    for (std::size_t k = 0; at_least && k < before.size(); ++k) {
+      was.emplace_back(found.bodies[k], before[k]);
+      moved.emplace_back(found.bodies[k], found.states[k]);
     }
   }
   why_not_ = "a body turns, and another is too near to it";
@@ -55,6 +71,28 @@ void EventModes::lift(Gathered& found, Turning& turning, Instant t, bool at_leas
     return found.passes[touch.pair] != 0 || now.gap > nearly_touching * touching ||
            std::abs(now.normal.dot(now.velocity)) > found.group.patches[touch.pair].rest_speed;
   });
+}
+
+/// Where touches are held along a normal that is not the one by which their bodies are apart: along
+/// that.
+std::vector<Clearance> EventModes::beside_touches(const Gathered& found,
+                                                  const TurningGroup& group) const {
+  constexpr double same = 1e-6;
+  std::vector<Clearance> others;
+  for (std::size_t p = 0; p < found.pairs.size(); ++p) {
+    const GroupPatch& patch = found.group.patches[p];
+    const auto& [a, b] = found.pairs[p];
+    const Overlap o = run_.detector.overlap(run_.model.shape(a), found.states[patch.a].pose,
+                                            run_.model.shape(b), found.states[patch.b].pose);
+    if ((o.normal - patch.manifold.normal).norm() > same) {
+      const double nearest = group.pairs[p].nearest;
+      const double missing = found.passes[p] != 0    ? std::max(-o.gap, 0.0)
+                             : o.gap < 0.5 * nearest ? nearest - o.gap
+                                                     : 0.0;
+      others.push_back({patch.a, patch.b, o.point, o.normal, missing});
+    }
+  }
+  return others;
 }
 
 void EventModes::raise(Gathered& found, Turning& turning, Instant t, bool at_least) {
@@ -75,7 +113,7 @@ void EventModes::raise(Gathered& found, Turning& turning, Instant t, bool at_lea
   for (Touch& touch : start.touches) {
     touch.gap += missing[touch.pair];
   }
-  if (!at_least || !put_clear(start)) {
+  if (!at_least || !put_clear(start, beside_touches(found, turning.group))) {
     put_at_gaps(start, all);
   }
   for (Touch& touch : start.touches) {
