@@ -193,6 +193,22 @@ class Watcher {
     } else if (found != Spare::none) {
       add_plane(spare_face_, found == Spare::face_of_a, false);
     }
+    if (!pair.apart.isZero(0.0)) {
+      // Across edges that are nearly parallel a plane turns fast, or is not known: the one at which
+      // a detector found them apart goes with one of them, whose corners are behind it.
+      for (const bool of_a : {true, false}) {
+        TouchFeature& plane = of_a ? plane_of_a_ : plane_of_b_;
+        const Quaternion& q = (of_a ? at.a : at.b).pose.orientation;
+        plane = {Kind::plane, Vector3::Zero(),
+                 q.conjugate() * (of_a ? pair.apart : Vector3(-pair.apart)), 0.0};
+        double highest = -infinity;
+        for (const TouchFeature& corner : of_a ? pair.corners_a : pair.corners_b) {
+          highest = std::max(highest, plane.direction.dot(corner.at) + corner.radius);
+        }
+        plane.at = highest * plane.direction;
+        add_plane(plane, of_a, false);
+      }
+    }
   }
 
   /// Edges of both whose common perpendicular leads out of both, so that it may separate them, and
@@ -379,6 +395,8 @@ class Watcher {
   std::vector<Candidate> candidates_;
   TouchFeature spare_face_;  ///< what one of them may be through
   Touch spare_edges_;
+  TouchFeature plane_of_a_;
+  TouchFeature plane_of_b_;
 };
 
 }  // namespace

@@ -26,6 +26,8 @@ struct TurningPair {
   double nearest = 0.0;  ///< what comes nearer than this strikes, m; held gaps are no smaller
   const Shape* shape_a = nullptr;  ///< whose other planes may separate them; not owned
   const Shape* shape_b = nullptr;
+  /// Along which a detector found them apart, from a to b, world, unit; zero: unknown.
+  Vector3 apart = Vector3::Zero();
 };
 
 /// A group of bodies that turn while they touch, and what moves them.

@@ -5,6 +5,8 @@
 #include "core/random.hpp"
 #include "tests/catch.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 
@@ -261,6 +263,33 @@ TEST_CASE("separation watch: where the plane that touches tells nothing, another
   }
   // Without another plane there is none; edges that may become parallel in the step are left out.
   CHECK(some > 3000);
+}
+
+TEST_CASE("separation watch: across edges that are nearly parallel", "[turning]") {
+  // Edges along x that cross at an angle of 1e-8: no face separates the two, and the plane across
+  // both edges would turn with them.
+  const Box box{Vector3(0.5, 0.5, 0.5)};
+  const Shape shape = box;
+  const Vector3 n = Vector3(0.0, 1.0, 1.0).normalized();
+  const Vector3 meet(0.1, 0.5, 0.5);
+  const Quaternion turned(Eigen::AngleAxisd(1e-8, n));
+  for (const double gap : {1e-12, 1e-10}) {
+    CAPTURE(gap);
+    Pose at_b;
+    at_b.orientation = turned;
+    at_b.position = meet + gap * n + turned * (Vector3(0.0, 0.5, 0.5) - Vector3(0.1, 0.0, 0.0));
+    TurningPair pair{0, 1, *corners_of(shape), *corners_of(shape), {}, {}, gap, &shape, &shape};
+    const auto until = [&] {
+      return SeparationWatch{pair, Motion::at_rest({}, {}), Motion::at_rest({}, at_b), {}, {}}
+          .strike_time(duration);
+    };
+    CHECK(until() == 0.0);
+    pair.apart = n;
+    CHECK(until() == duration);
+    // What a detector tells is a proposal: no plane across it is, and none is believed.
+    pair.apart = Vector3::UnitX();
+    CHECK(until() == 0.0);
+  }
 }
 
 TEST_CASE(

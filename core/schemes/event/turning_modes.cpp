@@ -280,6 +280,7 @@ std::string EventModes::add_touches(Gathered& found, Instant t, Turning& turning
       touch->gap = gap;
       group.start.touches.push_back(*touch);
     }
+    pair.apart = run_.detector.overlap(run_.model.shape(a), at_a, run_.model.shape(b), at_b).normal;
     group.pairs.push_back(std::move(pair));
   }
   if (!group.mechanisms.empty()) {
