@@ -241,11 +241,12 @@ void EventContacts::meet(Event& event, Instant t) {
 bool EventContacts::is_nothing(BodyIndex a, BodyIndex b, double speed) const {
   const auto is_still = [&](BodyIndex i) {
     const Twist& v = motions_.now(i).twist;
-    return v.linear.norm() + v.angular.norm() * run_.model.inertia(i).bounding_radius <=
-           still * struck_by_;
+    return run_.model.mobility(i) == Mobility::fixed ||
+           (run_.model.is_free(i) &&
+            v.linear.norm() + v.angular.norm() * run_.model.inertia(i).bounding_radius <=
+                still * struck_by_);
   };
-  return speed <= nothing * struck_by_ && (!run_.model.is_free(a) || is_still(a)) &&
-         (!run_.model.is_free(b) || is_still(b));
+  return struck_by_ > 0.0 && speed <= nothing * struck_by_ && is_still(a) && is_still(b);
 }
 
 void EventContacts::lay_still(BodyIndex a, BodyIndex b) {
