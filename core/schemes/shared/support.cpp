@@ -220,7 +220,7 @@ double outline_exit_time(std::span<const Vector3> outline, const Vector3& normal
   for (const Vector3& from : outline) {
     for (const Vector3& to : outline) {
       Vector3 out = (to - from).cross(normal);
-      if (!(out.norm() > slack * size)) {
+      if (!(out.norm() > slack)) {
         continue;  // one place, as roundoff goes
       }
       out.normalize();
