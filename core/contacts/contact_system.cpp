@@ -60,6 +60,22 @@ double ContactSystem::driven_work(const Eigen::VectorXd& impulses) const {
   return work;
 }
 
+double ContactSystem::carrying_work(const Eigen::VectorXd& impulses,
+                                    const std::vector<Twist>& v) const {
+  double work = 0.0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const ContactRow& row = rows[i];
+    const double p = impulses[static_cast<Eigen::Index>(i)];
+    for (const auto& [place, arm, sign] :
+         {std::tuple{row.a, row.arm_a, 1.0}, {row.b, row.arm_b, -1.0}}) {
+      if (!moves(bodies[place])) {
+        work += sign * p * row.direction.dot(v[place].linear + v[place].angular.cross(arm));
+      }
+    }
+  }
+  return work;
+}
+
 Eigen::MatrixXd ContactSystem::coupling_through_joints() const {
   const auto n = static_cast<Eigen::Index>(rows.size());
   std::vector<std::pair<Eigen::VectorXd, Eigen::VectorXd>> of_rows;
@@ -147,7 +163,7 @@ double ContactSystem::project(std::vector<Twist>& v, const Eigen::VectorXd* want
     const Eigen::VectorXd off = wanted == nullptr ? rates(v) : Eigen::VectorXd(rates(v) - *wanted);
     const Eigen::VectorXd impulses = -decomposition.solve(off);
     push(impulses, v);
-    driven += driven_work(impulses);
+    driven += driven_work(impulses) + carrying_work(impulses, v);
   }
   return driven;
 }

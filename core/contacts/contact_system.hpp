@@ -52,8 +52,12 @@ struct ContactSystem {
   void push(const Eigen::VectorXd& impulses, std::vector<Twist>& v) const;
   /// What driven sides of joints do while these pass on such impulses, J.
   [[nodiscard]] double driven_work(const Eigen::VectorXd& impulses) const;
+  /// What bodies do that nothing moves and that move at these velocities, while such impulses press
+  /// on them, J.
+  [[nodiscard]] double carrying_work(const Eigen::VectorXd& impulses,
+                                     const std::vector<Twist>& v) const;
   /// Projects v onto J v = 0, or `wanted`, in the metric of the kinetic energy; twice, so that only
-  /// the roundoff of a residual is left. Returns `driven_work` of that.
+  /// the roundoff of a residual is left. Returns `driven_work` and `carrying_work` of that.
   double project(std::vector<Twist>& v, const Eigen::VectorXd* wanted = nullptr) const;
   /// Undoes a change of linear velocities (from `before` to `v`) for bodies that it moves along a
   /// row faster than before, unless the difference is a small part of their speed.

@@ -39,7 +39,9 @@ double hold_normals(const TurningState& state, TurningMode& mode) {
   for (FrictionChoice& choice : choices) {
     choice.does = choice.does == Does::opens ? Does::opens : Does::slides;
   }
-  mode.velocities = held_velocities(from, now, choices).of;
+  HeldVelocities none_left = held_velocities(from, now, choices);
+  mode.velocities = std::move(none_left.of);
+  mode.driven += none_left.driven;
   double most = 0.0;
   for (std::size_t i = 0; i < from.states.size(); ++i) {
     const Twist& was = from.states[i].twist;
@@ -162,6 +164,7 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
   for (const Vector3& impulse : stopped.impulse) {
     mode.struck.push_back(impulse.isZero(0.0) ? 0 : 1);
   }
+  mode.driven = carrying_work(state, touches, stopped.impulse);
   for (const Vector6& v : velocities) {
     mode.velocities.push_back({v.head<3>(), v.tail<3>()});
   }

@@ -140,7 +140,8 @@ class Jams {
       bool any = false;
       for (std::size_t k = 0; k < n; ++k) {
         found.struck[k] = impulse[k].isZero(0.0) ? 0 : 1;
-        found.driven += local_[k].driven_work(impulse[k]);
+        found.driven +=
+            local_[k].driven_work(impulse[k]) + local_[k].carrying_work(impulse[k], before_);
         any = any || (coupling_[k] * impulse[k]).norm() > 4.0 * roundoff();
       }
       return any ? std::optional(std::move(found)) : std::nullopt;

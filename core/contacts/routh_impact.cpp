@@ -23,6 +23,8 @@ constexpr double straight = 1e-13;
 constexpr double nearly_stopped = 1e-12;
 /// What sticks parts by less than this part of what a normal impulse does: by roundoff of joints.
 constexpr double locked = 1e-12;
+/// What needs no more than this part of friction beyond it is held: it is known no better.
+constexpr double barely = 1e-12;
 /// What joints block to 1e-12 of what it would be moves by the root of that.
 constexpr double hardly_moves = 1e-6;
 /// Part of what an impulse does along the surface by which its direction turns in equilibrium.
@@ -107,7 +109,7 @@ class Routh {
   /// At rest along the surface: either friction holds, or sliding begins.
   void stopped() {
     const Vector2 hold = against(W_.block<2, 1>(1, 0));
-    if (hold.norm() <= mu_) {
+    if (hold.norm() <= mu_ * (1.0 + barely)) {
       const double parts = W_(0, 0) + hold.dot(W_.block<2, 1>(1, 0));
       if (parts <= locked * W_(0, 0)) {
         return lock();
@@ -170,12 +172,10 @@ class Routh {
     const Vector2 d = course_.u.tail<2>().normalized();
     const Vector2 rate = (W_ * push(-mu_ * d)).tail<2>();
     const double turns = std::abs(d[0] * rate[1] - d[1] * rate[0]);
-    if (blocked_[0] || blocked_[1]) {
-      // Along what nothing moves it slides on: the direction comes to an equilibrium.
-      const double scale = W_.block<2, 1>(1, 0).norm() + mu_ * W_.block<2, 2>(1, 1).norm();
-      return turns <= std::max(straight * rate.norm(), settled * scale);
-    }
-    return turns <= straight * rate.norm();
+    // Where friction nearly holds, and along what nothing moves, it slides on: the direction comes
+    // to an equilibrium.
+    const double scale = W_.block<2, 1>(1, 0).norm() + mu_ * W_.block<2, 2>(1, 1).norm();
+    return turns <= std::max(straight * rate.norm(), settled * scale);
   }
 
   void slide(const Vector2& d) {

@@ -207,7 +207,11 @@ std::optional<TouchFeature> ball_feature(const Shape& shape, const Vector3& x,
   }
   if (const auto* capsule = std::get_if<Capsule>(&shape)) {
     const Vector3 end = Vector3::UnitY() * std::copysign(0.5 * capsule->length, x.y());
-    if ((x - capsule->radius * outward - end).norm() > near_vertex * capsule->radius) {
+    const Vector3 from = x - capsule->radius * outward - end;
+    // The side goes on smoothly into the cap: it is the cap's only from its end on.
+    const bool side = capsule->length > 0.0 &&
+                      std::abs((from + end).y()) < std::abs(end.y()) - gone_over * capsule->radius;
+    if (side || from.norm() > near_vertex * capsule->radius) {
       return std::nullopt;
     }
     return TouchFeature{Kind::ball, end, Vector3::Zero(), capsule->radius};

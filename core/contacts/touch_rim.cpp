@@ -163,7 +163,11 @@ std::optional<std::vector<TouchRim>> rims_of(const Touch& touch, const Shape& a,
   for (const bool of_a : {true, false}) {
     const TouchFeature& feature = of_a ? touch.on_a : touch.on_b;
     const TouchFeature& other = of_a ? touch.on_b : touch.on_a;
-    const bool of_lines = feature.kind == Kind::line && other.kind == Kind::line;
+    const bool lines = feature.kind == Kind::line && other.kind == Kind::line;
+    // A cap ends where its side begins.
+    const bool cap = feature.kind == Kind::ball && other.kind == Kind::line &&
+                     std::holds_alternative<Capsule>(of_a ? a : b);
+    const bool of_lines = lines || cap;
     if (!of_lines && (other.kind != Kind::ball || !is_corner(other, of_a ? b : a))) {
       continue;
     }
@@ -171,7 +175,7 @@ std::optional<std::vector<TouchRim>> rims_of(const Touch& touch, const Shape& a,
     if (!sides) {
       return std::nullopt;
     }
-    if (of_lines) {
+    if (lines) {
       // The faces beside an edge are left out: corners that come down are watched anyway.
       std::erase_if(*sides, [&](const Side& side) {
         return std::abs(side.normal.dot(feature.direction)) < 0.5;

@@ -21,7 +21,7 @@ struct TouchRim {
   };
   std::vector<Side> sides;  ///< none: the feature has no end
   bool of_a = false;        ///< the feature is that of a
-  bool of_lines = false;  ///< the point is where the lines touch, otherwise the middle of the ball
+  bool of_lines = false;    ///< the point is where they touch, otherwise the middle of the ball
 
   /// How far the point is beyond the rim, m; negative: inside.
   [[nodiscard]] double beyond(const Touch& touch, const BodyState& a, const BodyState& b) const;

@@ -345,6 +345,22 @@ TurningMode turning_mode(const TurningState& state, double still, int halvings) 
   return Search(state, still, halvings).result();
 }
 
+double carrying_work(const TurningState& state, std::span<const SweptTouch> touches,
+                     std::span<const Vector3> impulses) {
+  double work = 0.0;
+  for (std::size_t k = 0; k < touches.size(); ++k) {
+    const SweptTouch& touch = touches[k];
+    for (const auto& [place, point, sign] :
+         {std::tuple{touch.a, touch.point_a, 1.0}, {touch.b, touch.point_b, -1.0}}) {
+      if (!kairos::moves(state.bodies[place])) {
+        const Twist& v = state.states[place].twist;
+        work += sign * impulses[k].dot(v.at(point, state.bodies[place].position));
+      }
+    }
+  }
+  return work;
+}
+
 HeldVelocities held_velocities(const TurningState& state, const std::vector<TouchNow>& now,
                                const std::vector<FrictionChoice>& choices) {
   ContactSystem held;
@@ -409,9 +425,10 @@ std::optional<Parting> parting_by_sweeps(const TurningState& state) {
   for (const auto& v : swept.velocities) {
     found.velocities.push_back({v.head<3>(), v.tail<3>()});
   }
-  for (const Vector3& impulse : swept.impulse) {
-    found.struck.push_back(impulse.isZero(0.0) ? 0 : 1);
+  for (std::size_t k = 0; k < touches.size(); ++k) {
+    found.struck.push_back(swept.impulse[k].isZero(0.0) ? 0 : 1);
   }
+  found.driven = carrying_work(state, touches, swept.impulse);
   return found;
 }
 
@@ -438,7 +455,7 @@ std::optional<Parting> parting(const TurningState& state) {
     return state.joints == nullptr ? parting_by_sweeps(state) : std::nullopt;
   }
   all.push(impulses.x, found.velocities);
-  found.driven = all.driven_work(impulses.x);
+  found.driven = all.driven_work(impulses.x) + all.carrying_work(impulses.x, found.velocities);
   for (const double impulse : impulses.x) {
     found.struck.push_back(impulse > 0.0 ? 1 : 0);
   }

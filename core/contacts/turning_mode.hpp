@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/contacts/contact_sweeps.hpp"
 #include "core/contacts/turning_forces.hpp"
 
 #include <optional>
@@ -17,7 +18,7 @@ struct TurningMode {
   TurningForces::Solution forces;
   std::vector<Twist> velocities;  ///< by body, with nothing left of what is held
   std::vector<char> struck;       ///< by touch: an impulse stopped it at the start; empty: none
-  double driven = 0.0;            ///< work of what joints hang on in that, J
+  double driven = 0.0;            ///< work of what is driven in that, J
   bool flies = false;             ///< nothing is held
   bool implicit = false;          ///< forces are those of a step, see `implicit_mode`
   bool keeps_all = false;         ///< what is not held goes on with what is, too
@@ -36,11 +37,16 @@ inline constexpr double turning_roundoff = 1e-11;
 /// are tried are halved so many times.
 [[nodiscard]] TurningMode turning_mode(const TurningState& state, double still, int halvings = 0);
 
+/// What bodies do that nothing moves and that move all the same, while such impulses press on them,
+/// J.
+[[nodiscard]] double carrying_work(const TurningState& state, std::span<const SweptTouch> touches,
+                                   std::span<const Vector3> impulses);
+
 /// Velocities with nothing left along the normals of what is held, nor where it sticks: nearest, as
 /// the kinetic energy measures.
 struct HeldVelocities {
   std::vector<Twist> of;  ///< by body
-  double driven = 0.0;    ///< work of what joints hang on in that, J
+  double driven = 0.0;    ///< work of what is driven in that, J
 };
 [[nodiscard]] HeldVelocities held_velocities(const TurningState& state,
                                              const std::vector<TouchNow>& now,
@@ -50,7 +56,7 @@ struct HeldVelocities {
 struct Parting {
   std::vector<Twist> velocities;  ///< by body
   std::vector<char> struck;       ///< by touch: it took an impulse
-  double driven = 0.0;            ///< work of what joints hang on in that, J
+  double driven = 0.0;            ///< work of what is driven in that, J
 };
 /// Velocities with which nothing approaches along the normals of the touches, nearest, as the
 /// kinetic energy measures; nothing where none are known.

@@ -1,11 +1,10 @@
 #include "core/contacts/turning_step.hpp"
 
 #include "core/bent_motion.hpp"
-#include "core/circular.hpp"
 #include "core/contacts/separation_watch.hpp"
+#include "core/power_nodes.hpp"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <array>
@@ -335,8 +334,12 @@ class Step {
         return motions[k];
       }
     }
-    Motion motion = Motion::at_rest(t_, group_.start.states[i].pose);
-    return motion;
+    for (const GroupDriver& driver : group_.drivers) {
+      if (driver.place == i) {
+        return driver.motion.shifted(t_ - driver.motion.start);
+      }
+    }
+    return Motion::at_rest(t_, group_.start.states[i].pose);
   }
 
   // --- What ends the mode -----------------------------------------------------------------------
@@ -459,6 +462,7 @@ class Step {
     } else {
       put_onto_joints(end, held);
     }
+    step_.states = end.states;
     const TurningForces there(end);
     step_.choices = at_end(there.now());
     const std::vector<Twist> velocities = held_velocities(end, there.now(), step_.choices).of;
@@ -516,9 +520,7 @@ class Step {
 
   /// Power of the contact forces at 8 nodes, and the polynomials through it, integrated.
   void book() {
-    constexpr int nodes = 8;
-    using Square = Eigen::Matrix<double, nodes, nodes>;
-    Square powers;
+    constexpr int nodes = PowerNodes::count;
     Eigen::MatrixXd of_body =
         Eigen::MatrixXd::Zero(nodes, static_cast<Eigen::Index>(group_.bodies.size()));
     Eigen::MatrixXd leaks = of_body;
@@ -526,35 +528,25 @@ class Step {
     Eigen::MatrixXd of_pair =
         Eigen::MatrixXd::Zero(nodes, static_cast<Eigen::Index>(group_.pairs.size()));
     Eigen::MatrixXd of_belt = of_pair;
+    Eigen::MatrixXd of_surface = of_pair;
     for (int j = 0; j < nodes; ++j) {
-      const double u = 0.5 * (1.0 - cosine(M_PI * (2 * j + 1) / (2.0 * nodes)));
-      for (int k = 0; k < nodes; ++k) {
-        powers(j, k) = k == 0 ? 1.0 : powers(j, k - 1) * u;
-      }
-      power_at(u * step_.duration, of_body.row(j), of_pair.row(j), of_belt.row(j), leaks.row(j),
-               of_driver.row(j));
+      power_at(PowerNodes::at(j) * step_.duration, of_body.row(j), of_pair.row(j), of_belt.row(j),
+               of_surface.row(j), leaks.row(j), of_driver.row(j));
     }
-    const Eigen::PartialPivLU<Square> interpolate(powers);
-    const auto integrated = [&](const Eigen::VectorXd& values) {
-      const Eigen::VectorXd c = interpolate.solve(values);
-      Polynomial<3> work;
-      work.resize(nodes);
-      double scale = 1.0;
-      for (int k = 0; k < nodes; ++k) {
-        work[k + 1].x() = c[k] / ((k + 1) * scale);
-        scale *= step_.duration;
-      }
-      return work;
+    const auto integrated = [&](const Eigen::VectorXd& powers) {
+      return PowerNodes::work(powers, step_.duration);
     };
     for (Eigen::Index i = 0; i < of_body.cols(); ++i) {
       step_.worked.push_back(integrated(of_body.col(i)));
     }
     for (Eigen::Index p = 0; p < of_pair.cols(); ++p) {
       step_.rubbed.push_back(integrated(of_pair.col(p)));
-      if (!of_belt.col(p).isZero(0.0)) {
-        const Polynomial<3> belt = integrated(of_belt.col(p));
-        for (int k = 0; k <= belt.degree(); ++k) {
-          step_.rubbed.back()[k].y() = belt[k].x();
+      for (const auto& [powers_of, axis] : {std::pair{&of_belt, 1}, {&of_surface, 2}}) {
+        if (!powers_of->col(p).isZero(0.0)) {
+          const Polynomial<3> work = integrated(powers_of->col(p));
+          for (int k = 0; k <= work.degree(); ++k) {
+            step_.rubbed.back()[k][axis] = work[k].x();
+          }
         }
       }
     }
@@ -575,14 +567,14 @@ class Step {
     leaked = step_.worked[free_[0]];
     for (const auto& work : step_.rubbed) {
       for (int k = 0; k <= work.degree(); ++k) {
-        leaked[k].x() -= work[k].x() + work[k].y();
+        leaked[k].x() -= work[k].sum();
       }
     }
   }
 
   template <typename Bodies, typename Pairs>
-  void power_at(double s, Bodies of_body, Pairs of_pair, Pairs of_belt, Bodies leaks,
-                Bodies of_driver) {
+  void power_at(double s, Bodies of_body, Pairs of_pair, Pairs of_belt, Pairs of_surface,
+                Bodies leaks, Bodies of_driver) {
     const TurningState state = at(s);
     TurningForces forces(state);
     const auto choices = directed(mode_, forces.now(), slow_);
@@ -602,6 +594,11 @@ class Step {
       };
       const double on_a = -power(touch.a, now.point_a);
       const double on_b = power(touch.b, now.point_b);
+      for (const auto& [i, on] : {std::pair{touch.a, on_a}, {touch.b, on_b}}) {
+        if (!(group_.inertia[i].mass > 0.0)) {
+          of_surface[static_cast<Eigen::Index>(touch.pair)] -= on;
+        }
+      }
       of_body[static_cast<Eigen::Index>(touch.a)] += on_a;
       of_body[static_cast<Eigen::Index>(touch.b)] += on_b;
       double rubbed = 0.0;
@@ -665,6 +662,15 @@ class Step {
 
 }  // namespace
 
+Twist accelerations_of(const Motion& motion, Instant t) {
+  const double s = t - motion.start;
+  Twist out{motion.acceleration(s), Vector3::Zero()};
+  if (motion.rotation != RotationKind::fixed) {
+    out.angular = motion.angular_velocity.derivative(s);
+  }
+  return out;
+}
+
 TurningState turning_state(const TurningGroup& group, Instant t,
                            std::span<const BodyState> free_states) {
   TurningState state;
@@ -675,7 +681,13 @@ TurningState turning_state(const TurningGroup& group, Instant t,
   for (std::size_t i = 0; i < group.bodies.size(); ++i) {
     const BodyInertia& inertia = group.inertia[i];
     const bool free = inertia.mass > 0.0;
-    state.states.push_back(free ? free_states[next++] : group.start.states[i]);
+    const auto driver = std::find_if(group.drivers.begin(), group.drivers.end(),
+                                     [i](const GroupDriver& d) { return d.place == i; });
+    const double moved = driver != group.drivers.end() ? t - driver->motion.start : 0.0;
+    state.states.push_back(free ? free_states[next++]
+                           : driver != group.drivers.end()
+                               ? BodyState{driver->motion.pose(moved), driver->motion.twist(moved)}
+                               : group.start.states[i]);
     const BodyState& s = state.states.back();
     state.bodies.push_back(group_body(inertia, s.pose));
     applied.push_back({group.constant_force[i], Vector3::Zero()});
@@ -708,6 +720,9 @@ TurningState turning_state(const TurningGroup& group, Instant t,
   }
   for (std::size_t i = 0; i < group.bodies.size(); ++i) {
     state.loads.push_back(load(i));
+  }
+  for (const GroupDriver& driver : group.drivers) {
+    state.loads[driver.place] = accelerations_of(driver.motion, t);
   }
   state.joints = group_joints(group.mechanisms, t, state.states);
   return state;

@@ -30,6 +30,12 @@ struct TurningPair {
   Vector3 apart = Vector3::Zero();
 };
 
+/// A body of a group that is driven.
+struct GroupDriver {
+  std::size_t place = 0;
+  Motion motion;
+};
+
 /// A group of bodies that turn while they touch, and what moves them.
 struct TurningGroup {
   TurningState start;
@@ -39,6 +45,7 @@ struct TurningGroup {
   /// By place: forces that depend on the state or on time, of the body alone; not owned.
   std::vector<std::vector<const Force*>> forces;
   std::vector<GroupMechanism> mechanisms;   ///< what hangs together by joints
+  std::vector<GroupDriver> drivers;         ///< what is driven
   std::vector<TurningPair> pairs;           ///< as `Touch::pair` counts
   std::vector<std::vector<TouchRim>> rims;  ///< by touch
 };
@@ -65,7 +72,7 @@ struct TurningStep {
   /// slides where the step was cut off before it stops.
   std::vector<FrictionChoice> choices;
   std::vector<Polynomial<3>> worked;  ///< by place: x, work of contact forces on the body, J
-  /// By pair: x, work of friction that slides, J, <= 0; y, what belts do, J.
+  /// By pair: x, work of friction that slides, J, <= 0; y, what belts do, J; z, what is driven, J.
   std::vector<Polynomial<3>> rubbed;
   /// By place: x, what the contact forces of the touches of which it is the first free body gave
   /// that is no friction: truncation, J.
@@ -75,6 +82,9 @@ struct TurningStep {
   std::vector<Polynomial<3>> driven;
   std::int64_t evaluations = 0;
 };
+
+/// Of a motion, at an instant within it: of its origin, m/s^2, and rad/s^2.
+[[nodiscard]] Twist accelerations_of(const Motion& motion, Instant t);
 
 /// The group at another instant, in other states, of its free bodies.
 [[nodiscard]] TurningState turning_state(const TurningGroup& group, Instant t,

@@ -155,6 +155,40 @@ TEST_CASE("routh: sliding that turns, of what is light or heavy, smooth or rough
   }
 }
 
+// A cube that falls flat onto a face while a corner of it rests: what holds the corner that strikes
+// is just the friction that there is, if that is 0.6. Whether it slides or sticks is roundoff, and
+// how it moves afterwards is not.
+TEST_CASE("routh: friction that just holds", "[routh]") {
+  const double inertia = 0.08 / 12.0;
+  const Vector3 axes[3] = {Vector3::UnitY(), Vector3::UnitX(), Vector3::UnitZ()};
+  for (const double aside : {0.0, 2e-10, 1e-9, 1e-8}) {
+    for (const double lower : {0.0, 2.7e-11}) {
+      for (const double slip : {0.0, 1e-16, 1e-11, 2e-10, -4e-5}) {
+        for (const double e : {0.0, 0.5}) {
+          CAPTURE(aside, lower, slip, e);
+          const Vector3 arm(0.1, -0.1 - lower, aside);
+          Matrix3 W;
+          for (int i = 0; i < 3; ++i) {
+            for (int k = 0; k < 3; ++k) {
+              W(i, k) = axes[i].dot(axes[k]) +
+                        axes[i].dot(Vector3(arm.cross(axes[k]) / inertia).cross(arm));
+            }
+          }
+          const Vector3 before(-1.5, slip, -4.1e-11);
+          const RouthImpact impact = routh_impact(W, before, 0.6, e);
+          REQUIRE(impact.solved);
+          // Sticking, W_nn - W_nt^2 / W_tt = 1.6 is what it feels.
+          CHECK(impact.impulse[0] == Approx((1.0 + e) * 1.5 / 1.6).epsilon(1e-4));
+          CHECK(impact.velocity.tail<2>().norm() <= std::abs(slip) + 5e-11);
+          CHECK((impact.velocity - before - W * impact.impulse).norm() <= 1e-12);
+          CHECK(impact.friction_work <= 0.0);
+          CHECK(impact.impulse.tail<2>().norm() <= 0.6 * impact.impulse[0] * (1.0 + 1e-11));
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("routh: a point that joints let move along one line", "[routh]") {
   // Pressed together it feels the normal impulse and friction that helps, let go friction that does
   // not. Where friction is more than the line is steep it is not let go.

@@ -1,5 +1,6 @@
 #include "core/schemes/event/driven_mode.hpp"
 
+#include "core/power_nodes.hpp"
 #include "core/schemes/event/mode_guards.hpp"
 #include "core/schemes/shared/support.hpp"
 
@@ -35,6 +36,27 @@ Polynomial<3> along(const Polynomial<3>& p, const Vector3& axis, double factor, 
   }
   f[0].x() += constant;
   return f;
+}
+
+/// Of friction against `slides`, times what presses, and of the plane, until the sliding ends.
+Polynomial<3> work(const DrivenMode& mode, const Motion& under, const Polynomial<3>& presses,
+                   const Vector3& slides, const Vector3& n) {
+  const double duration = std::min(mode.until, mode.motion.duration);
+  Eigen::VectorXd rubs(PowerNodes::count);
+  Eigen::VectorXd carries(PowerNodes::count);
+  for (int k = 0; k < PowerNodes::count; ++k) {
+    const double s = PowerNodes::at(k) * duration;
+    const double pressed = presses(s).x();
+    const Vector3 v = under.twist(s).linear;
+    rubs[k] = -pressed * slides.dot(mode.motion.twist(s).linear - v);
+    carries[k] = pressed * (n - slides).dot(v);
+  }
+  Polynomial<3> both = PowerNodes::work(rubs, duration);
+  const Polynomial<3> carried = PowerNodes::work(carries, duration);
+  for (int k = 0; k <= carried.degree(); ++k) {
+    both[k].z() = carried[k].x();
+  }
+  return both;
 }
 
 }  // namespace
@@ -131,23 +153,32 @@ DrivenMode driven_mode(const DrivenTouch& touch, const Motion& under) {
     mode.refusal = "a body with infinite friction slides";
     return mode;
   }
-  if (!constant) {
-    mode.refusal = "a body slides while the force that presses it changes";
-    return mode;
-  }
-  mode.pushes = weight * n - most_friction * d;
+  mode.pushes = mode.pressing * (n - touch.friction * d);
   mode.leans = -touch.friction * d;
   mode.velocity = v + slip;
-  const Vector3 acceleration = pull - most_friction * d;
-  Motion own = Motion::ballistic(under.start, window, touch.body.pose,
-                                 {mode.velocity, Vector3::Zero()}, acceleration);
+  Motion own =
+      Motion::ballistic(under.start, window, touch.body.pose, {mode.velocity, Vector3::Zero()},
+                        pull - touch.friction * mode.pressing * d);
+  for (int k = 1; !constant && k <= presses.degree(); ++k) {
+    const Vector3 a = -touch.friction * presses[k].x() * d;
+    own.velocity.resize(std::max(own.velocity.degree(), k + 1));
+    own.position.resize(std::max(own.position.degree(), k + 2));
+    own.velocity[k + 1] = a / (k + 1.0);
+    own.position[k + 2] = a / ((k + 1.0) * (k + 2.0));
+  }
   mode.motion = ride(own, under, n);
   // -(v - V) . d > 0: it has stopped.
-  Polynomial<3> back = along(under.velocity, d, 1.0, -d.dot(mode.velocity));
-  back.resize(std::max(back.degree(), 1));
-  back[1].x() -= d.dot(acceleration);
+  Polynomial<3> back = along(under.velocity, d, 1.0, 0.0);
+  back.resize(std::max(back.degree(), own.velocity.degree()));
+  for (int k = 0; k <= own.velocity.degree(); ++k) {
+    back[k].x() -= d.dot(Vector3(own.velocity[k]));
+  }
   const double moment = mode.slip == Slip::begins ? begun * window : 0.0;
   mode.until = moment + first_positive(back.shifted(moment), window - moment);
+  if (!constant) {
+    mode.until = std::min(mode.until, lift_off);
+    mode.worked = work(mode, under, presses, touch.friction * d, n);
+  }
   return mode;
 }
 

@@ -3,6 +3,7 @@
 #include "core/contacts/flat_modes.hpp"
 #include "core/motion.hpp"
 
+#include <optional>
 #include <string>
 
 namespace kairos {
@@ -26,16 +27,18 @@ struct DrivenMode {
   Motion motion;                       ///< of the body
   Vector3 velocity = Vector3::Zero();  ///< of it now, m/s
   double pressing = 0.0;               ///< now, m/s^2
-  Vector3 pushes = Vector3::Zero();    ///< what the plane gives it, m/s^2, constant if it slides
+  Vector3 pushes = Vector3::Zero();    ///< what the plane gives it now, m/s^2
   Vector3 leans = Vector3::Zero();     ///< largest that friction is, of what presses
   double until = 0.0;                  ///< when this ends, s; may be infinite
+  /// Where it slides and what presses changes: x, work of friction by the mass, J/kg, and z, of the
+  /// plane; otherwise none.
+  std::optional<Polynomial<3>> worked{};
 };
 
 /// The body sticks as long as friction can give it the acceleration of the plane, slides against
 /// mu N otherwise, and parts where the plane draws away faster than the load follows. All of these
 /// end at roots of polynomials, since the motion of the plane, `under`, is one (from now on). The
-/// motion of the plane along itself, the sliding and the pull must lie on one line; against
-/// friction a body slides only where what presses is constant.
+/// motion of the plane along itself, the sliding and the pull must lie on one line.
 [[nodiscard]] DrivenMode driven_mode(const DrivenTouch& touch, const Motion& under);
 
 }  // namespace core

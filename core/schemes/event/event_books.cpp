@@ -168,13 +168,18 @@ void EventMotions::book_surface_forces(BodyIndex i, Instant t) {
       if (done.y() != 0.0) {
         run_.ledger.add(EnergyLine::conveyor_and_hand, done.y());
       }
+      if (done.z() != 0.0) {
+        run_.ledger.add(EnergyLine::driven_work, done.z());
+      }
     } else if (surface.slides) {
       run_.ledger.add(EnergyLine::friction, surface.along.dot((way_b - way_a) + belts));
     }
     if (!belts.isZero(0.0) && !surface.curved) {
       run_.ledger.add(EnergyLine::conveyor_and_hand, -surface.along.dot(belts));
     }
-    if (surface.rides) {
+    if (surface.curved) {
+      // told with what is spent
+    } else if (surface.rides) {
       // m (v1^2 - v0^2) / 2 - F.x, where F is every force but the contact's.
       const BodyState& from = run_.model.is_free(surface.b) ? surface.from_b : surface.from_a;
       const BodyState& to = run_.model.is_free(surface.b) ? to_b : to_a;
@@ -185,7 +190,7 @@ void EventMotions::book_surface_forces(BodyIndex i, Instant t) {
     } else if (run_.model.mobility(surface.a) == Mobility::driven) {
       run_.ledger.add(EnergyLine::driven_work, surface.force.dot(way_a));
     }
-    if (!surface.rides && run_.model.mobility(surface.b) == Mobility::driven) {
+    if (!surface.rides && !surface.curved && run_.model.mobility(surface.b) == Mobility::driven) {
       run_.ledger.add(EnergyLine::driven_work, -surface.force.dot(way_b));
     }
     surface.from_a = to_a;

@@ -576,8 +576,12 @@ void EventContacts::leave_support(BodyIndex i, Instant t) {
 }
 
 void EventContacts::carry_riders(BodyIndex surface, Instant t) {
+  std::vector<BodyIndex> settled;
   for (const BodyIndex i : modes_.held_by(surface)) {
-    if (joints_of(i) == nullptr) {
+    if (std::find(settled.begin(), settled.end(), i) == settled.end() && !run_.stopped()) {
+      const std::array<BodyIndex, 1> seed{i};
+      const std::vector<BodyIndex> group = modes_.group(seed);
+      settled.insert(settled.end(), group.begin(), group.end());
       settle_anew(i, t);
     }
   }

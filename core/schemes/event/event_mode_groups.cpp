@@ -23,7 +23,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Where bodies rest on more points than they have ways to move, rates at these contradict each
 /// other by what the points are off, and no velocities make all of them nothing. What is left is
 /// then to press and not to part: what holds does not strike what draws away. Returns the work of
-/// what joints hang on in that, J.
+/// what is driven in that, J.
 double press_what_contradicts(const ContactSystem& held, std::span<const double> radius,
                               std::vector<Twist>& v) {
   double fastest = 0.0;
@@ -39,7 +39,7 @@ double press_what_contradicts(const ContactSystem& held, std::span<const double>
     return 0.0;
   }
   held.push(-pull.x, v);
-  return held.driven_work(-pull.x);
+  return held.driven_work(-pull.x) + held.carrying_work(-pull.x, v);
 }
 
 /// What is this many times as far away as what touches may come to touch where gaps are made

@@ -102,20 +102,22 @@ bool EventModes::settle_once(std::span<const BodyIndex> seeds, Instant t, const 
                              const SettleOptions& options) {
   Gathered found = gather(seeds, t, options);
   why_not_ = found.refusal;
-  if (why_not_.empty() && found.driven && !found.hangs.empty()) {
-    why_not_ = found.hangs + ", and what it touches is driven";
-  }
-  if (why_not_.empty() && found.driven) {
-    return settle_driven(found, t, adopt, options);
-  }
-  if (why_not_.empty() && found.pairs.size() < options.pairs) {
-    why_not_ = "some are still on their way";
-  }
   if (!why_not_.empty()) {
+    return false;
+  }
+  if (found.driven && found.hangs.empty() && !options.not_flat &&
+      settle_driven(found, t, adopt, options)) {
+    return true;
+  }
+  if (found.pairs.size() < options.pairs) {
+    why_not_ = "some are still on their way";
     return false;
   }
   if (options.turning_only && !has_turned(seeds)) {
     return false;
+  }
+  if (found.driven) {
+    return (options.may_turn || has_turned(seeds)) && settle_turning(seeds, t, adopt, options);
   }
   // What is stepped over hardly comes to lie flat from step to step.
   constexpr int tries_flat_every = 16;
@@ -413,7 +415,7 @@ void EventModes::set_friction(const Gathered& found, const FlatMode& mode, Insta
           {.a = a,
            .b = b,
            .slides = now == Slip::slides,
-           .rides = now != Slip::slides && found.driven.has_value(),
+           .rides = turning == nullptr && now != Slip::slides && found.driven.has_value(),
            .curved = turning != nullptr || (alone != nullptr && alone->curved),
            .force = force,
            .along = force - n * n.dot(force),

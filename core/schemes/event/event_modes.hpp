@@ -129,7 +129,7 @@ class EventModes {
     Eigen::VectorXd restitution;  ///< by row
     std::vector<Twist> velocities;
     std::vector<double> gaps;  ///< by row, m
-    double driven = 0.0;       ///< work of what joints hang on in what led to the velocities, J
+    double driven = 0.0;       ///< work of what is driven in what led to the velocities, J
     std::string refusal;       ///< why it is none
   };
   /// What these bodies, whose states are at `now`, are in touch with: all of it, or what is held.
@@ -211,6 +211,7 @@ class EventModes {
   [[nodiscard]] bool goes_on_implicitly(const Gathered& found, Instant t) const;
   [[nodiscard]] static bool has_joints(const Gathered& found);
   void find_forces(const Gathered& found, Turning& turning, Instant t);
+  [[nodiscard]] double given_until(const Turning& turning, Instant t) const;
   [[nodiscard]] bool ends_in_touch(const Gathered& found, const Turning& turning) const;
   [[nodiscard]] bool step_over(const Gathered& found, Turning& turning, Instant t,
                                const SettleOptions& asked);

@@ -447,6 +447,10 @@ void EventMotions::drive(BodyIndex i, Instant t) {
   run_.agenda.push(end_of(i), DueKind::segment_end, i, i);
 }
 
+Motion EventMotions::driven_from(BodyIndex i, Instant t) const {
+  return t < end_of(i) ? of(i) : run_.model.body(i).drive->motion(t, run_.epoch());
+}
+
 void EventMotions::keep_motion(BodyIndex i, const Motion& motion) {
   table_.keep(i, motion);
   ways_[i] = 0;

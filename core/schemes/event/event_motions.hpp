@@ -36,6 +36,8 @@ class EventMotions {
     return flies_parabola(i) ? std::numeric_limits<double>::infinity() : table_.duration(i);
   }
   [[nodiscard]] Instant end_of(BodyIndex i) const { return start_of(i) + duration_of(i); }
+  /// How a driven body moves from t on, also where that is where its motion ends.
+  [[nodiscard]] Motion driven_from(BodyIndex i, Instant t) const;
   /// A shape with the motion that it has, for as long as this lives.
   [[nodiscard]] MotionTable::Moving moving(BodyIndex i) const { return table_.moving(i); }
   /// No coordinate of body i is greater in the first `s` seconds of its motion, m.

@@ -576,13 +576,15 @@ std::optional<TimeOfImpact> EventPredictor::ball_meets_plane(const PairQuery& of
   return std::nullopt;
 }
 
-/// `touching_gap`, also where one of the two is seen as an image.
-double EventPredictor::allowed_gap(const PairQuery& of) const {
-  const double gap = touching_gap(of.a, of.b);
+/// The greatest gap at which an undecided answer is that of a touch, also where one of the two is
+/// seen as an image: about the tolerance of the detectors, half of `touching_gap`. What they ran
+/// out of work at above it may be above `touching_gap` as measured there.
+double EventPredictor::answered_gap(const PairQuery& of) const {
+  const double gap = 0.5 * touching_gap(of.a, of.b);
   if (!is_imaged(of)) {
     return gap;
   }
-  return gap + 704.0 * std::numeric_limits<double>::epsilon() *
+  return gap + 352.0 * std::numeric_limits<double>::epsilon() *
                    run_.model.scene().periodic->shift(of.image).lpNorm<1>();
 }
 
@@ -619,7 +621,7 @@ void EventPredictor::look_nearer(const PairQuery& query, TimeOfImpact toi) {
   constexpr double worth_it = 1.0 / 16.0;  // of the window
   constexpr int most_tries = 40;           // to 1e-24 of the window
   const Instant t = query.from;
-  const double allowed = allowed_gap(query);
+  const double allowed = answered_gap(query);
   double duration = query.duration;
   for (int k = 0; k < most_tries; ++k) {
     const bool touching = toi.status != ToiStatus::undecided || toi.gap <= allowed;
@@ -663,7 +665,7 @@ void EventPredictor::take_answer(const PairQuery& query, const TimeOfImpact& toi
     case ToiStatus::separated:
       return;
     case ToiStatus::undecided:
-      if (toi.gap > allowed_gap(query)) {
+      if (toi.gap > answered_gap(query)) {
         return look_nearer(query, toi);
       }
       return push_meeting(query, toi);
@@ -691,6 +693,10 @@ void EventPredictor::leave_overlap(const PairQuery& query) {
     return push(query, 0.0, DueKind::impact);
   }
   const TimeOfImpact meanwhile = without_errors(query);
+  if (meanwhile.status == ToiStatus::undecided && meanwhile.gap > answered_gap(query) &&
+      meanwhile.t_lo > 0.0) {
+    return push(query, meanwhile.t_lo, DueKind::recheck);  // out of work, and apart until then
+  }
   if (meanwhile.status == ToiStatus::impact || meanwhile.status == ToiStatus::undecided) {
     return push_meeting(query, meanwhile);
   }

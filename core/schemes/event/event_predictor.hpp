@@ -132,7 +132,7 @@ class EventPredictor {
   [[nodiscard]] std::optional<TimeOfImpact> ball_meets_plane(const PairQuery& of,
                                                              const Window& window) const;
   [[nodiscard]] Motion motion_of(BodyIndex i, const PairQuery& of) const;
-  [[nodiscard]] double allowed_gap(const PairQuery& of) const;
+  [[nodiscard]] double answered_gap(const PairQuery& of) const;
   void push_meeting(const PairQuery& of, const TimeOfImpact& toi);
   void look_nearer(const PairQuery& query, TimeOfImpact toi);
   void predict_parting(const PairQuery& query, DueKind kind);

@@ -70,7 +70,7 @@ bool EventModes::step_over(const Gathered& found, Turning& turning, Instant t,
   }
   const double frame = run_.options.step > 0.0 ? run_.options.step : run_.mean_frame;
   const double before = implicit_steps(found).second > 0 ? next_step(found) : frame;
-  double h = std::min({implicit_part * frame, run_.epoch_end() - t, before});
+  double h = std::min({implicit_part * frame, given_until(turning, t), before});
   bool halved = false;
   int refused = 0;
   for (int round = 0; round < most_halvings; ++round, h *= 0.5, halved = true) {

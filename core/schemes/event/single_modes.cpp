@@ -106,6 +106,13 @@ bool EventModes::settle_driven(Gathered found, Instant t, const Adopt& adopt,
   run_.account.moved(body, position - before);
   GivenMotion alone_there{driven.motion, false, {}};
   alone_there.motion.start = t;
+  if (driven.worked) {
+    alone_there.curved = true;
+    alone_there.spent = *driven.worked;
+    for (int j = 0; j <= alone_there.spent.degree(); ++j) {
+      alone_there.spent[j] *= mass;
+    }
+  }
   commit(found, mode, t, adopt, &alone_there);
   run_.push_in_epoch(t + driven.until, DueKind::mode_ends, found.pairs[0].first,
                      found.pairs[0].second);

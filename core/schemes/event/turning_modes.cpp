@@ -79,7 +79,7 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
     return turned(seeds) && !asked.pressed && !asked.unloaded && fly(found, turning, t, adopt);
   }
   const double frame = run_.options.step > 0.0 ? run_.options.step : run_.mean_frame;
-  const double longest = std::min({frame, run_.epoch_end() - t, next_step(found)});
+  const double longest = std::min({frame, given_until(turning, t), next_step(found)});
   const bool steps_over = asked.step_over || goes_on_implicitly(found, t);
   if (!steps_over) {
     find_forces(found, turning, t);
@@ -139,6 +139,15 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
   return true;
 }
 
+/// For how long from an instant on it is known how what is driven moves, s.
+double EventModes::given_until(const Turning& turning, Instant t) const {
+  double until = run_.epoch_end() - t;
+  for (const GroupDriver& driver : turning.group.drivers) {
+    until = std::min(until, driver.motion.end() - t);
+  }
+  return until;
+}
+
 /// Whether what is held where edges cross, which moves along them and is no rim, still touches at
 /// the end of a step.
 bool EventModes::ends_in_touch(const Gathered& found, const Turning& turning) const {
@@ -147,9 +156,8 @@ bool EventModes::ends_in_touch(const Gathered& found, const Turning& turning) co
     const Touch& touch = touches[k];
     const BodyIndex a = found.bodies[touch.a];
     const BodyIndex b = found.bodies[touch.b];
-    const auto ends_nowhere = [&](BodyIndex i) {  // or is not known where it is then
-      return std::holds_alternative<HalfSpace>(run_.model.shape(i)) ||
-             run_.model.mobility(i) == Mobility::driven;
+    const auto ends_nowhere = [&](BodyIndex i) {
+      return std::holds_alternative<HalfSpace>(run_.model.shape(i));
     };
     if (!turning.group.rims[k].empty() || ends_nowhere(a) || ends_nowhere(b) ||
         turning.mode.choices[k].does == FrictionChoice::Does::opens) {
@@ -211,15 +219,18 @@ void EventModes::find_forces(const Gathered& found, Turning& turning, Instant t)
 /// none.
 std::string EventModes::add_touches(Gathered& found, Instant t, Turning& turning) const {
   TurningGroup& group = turning.group;
-  if (found.driven) {
-    return "'" + run_.model.body(*found.driven).name + "' is driven, and what touches it turns";
-  }
   group.start.bodies = found.group.bodies;
   group.start.states = found.states;
   group.start.loads = found.group.loads;
   group.start.radius = found.group.radius;
   group.bodies = found.bodies;
   group.mechanisms = found.mechanisms;
+  for (std::size_t k = 0; k < found.bodies.size(); ++k) {
+    if (run_.model.mobility(found.bodies[k]) == Mobility::driven) {
+      group.drivers.push_back({k, motions_.driven_from(found.bodies[k], t)});
+      group.start.loads[k] = accelerations_of(group.drivers.back().motion, t);
+    }
+  }
   for (const BodyIndex i : found.bodies) {
     const bool free = run_.model.is_free(i);
     group.inertia.push_back(free ? run_.model.inertia(i) : BodyInertia{});
@@ -500,8 +511,8 @@ void EventModes::carry_on(const Gathered& found, const Turning& turning, Instant
     }
   }
   const Instant end = t + turning.step.duration;
-  if (!(end < run_.epoch_end())) {
-    return;
+  if (!(turning.step.duration < given_until(turning, t))) {
+    return;  // it is settled anew then
   }
   const bool strikes = turning.step.end == TurningEnd::strike;
   if (strikes) {
