@@ -28,13 +28,8 @@ constexpr double most_radians = 1e4;
 constexpr int looks_before_try = 5;
 constexpr int looks_between_tries = 8;
 /// After so many looks in a row within the tolerance steps are also taken along other axes than
-/// that of the greatest gap: a contact has been sought and not been found. Elsewhere after so many
-/// looks, and then as long as it pays: across two edges, whose direction turns with both, bodies
-/// that slide along each other close slower than along a direction that does not.
+/// that of the greatest gap: a contact has been sought and not been found.
 constexpr int looks_before_axes = looks_before_try;
-constexpr int looks_between_axes = 16;
-/// It pays if the steps are so many times as long.
-constexpr double worth_axes = 2.0;
 /// For bodies that spin by more than a radian still: looks between two tries with the hulls of all
 /// that they sweep. If these hulls are apart nothing else has to be looked at.
 constexpr int looks_between_hulls = 64;
@@ -83,30 +78,22 @@ int work_allowed(const Effort& effort, double spin, double remaining) {
                       : effort.most_evaluations;
 }
 
-/// What is tried beside the direction of the greatest gap.
-struct Tries {
-  bool hulls = false;
-  bool axes = false;
-  bool axes_paid = false;  ///< when they were tried last
-};
-
 /// The end of a step that is proven free of contact, window time: exactly where the bounds end, if
 /// it gets there, so that no sliver is left for the next one.
-double next_after(const PairLooks& pair, const BoundsAhead& bounds, const Look& at, Tries& tries) {
+double next_after(const PairLooks& pair, const BoundsAhead& bounds, const Look& at, bool try_hulls,
+                  bool try_axes) {
   const double remaining = pair.duration() - at.t();
   const double horizon = std::min(remaining, bounds.until() - at.t());
   const double spin = bounds.spin();
   double step = 0.0;
-  if (tries.hulls && spin * remaining > 1.0) {
+  if (try_hulls && spin * remaining > 1.0) {
     step = pair.step_beside_hulls(at, bounds.turn(), horizon);
   }
   if (step * spin < 1.0) {
     step = std::max(step, pair.safe_step(at.k, at.witness, bounds.turn(), horizon));
   }
-  if (tries.axes && step < horizon) {
-    const double along_axes = pair.step_along_axes(at, bounds.turn(), horizon);
-    tries.axes_paid = along_axes > worth_axes * step;
-    step = std::max(step, along_axes);
+  if (try_axes && step < horizon) {
+    step = std::max(step, pair.step_along_axes(at, bounds.turn(), horizon));
   }
   if (reaches_end(step, remaining)) {
     return pair.duration();
@@ -139,7 +126,6 @@ Ending advance_from(PairLooks& pair, BoundsAhead& bounds, const Effort& effort, 
   const int first = pair.count();
   const double repeats = at.t() + period(pair.motion(), at.k, bounds.spin());
   int near = 0;  // looks within the tolerance, one after the other
-  Tries tries;
   while (true) {
     const bool spent = pair.count() > budget;
     near = effort.tolerance.holds(at) ? near + 1 : 0;
@@ -152,11 +138,8 @@ Ending advance_from(PairLooks& pair, BoundsAhead& bounds, const Effort& effort, 
       return {ToiStatus::undecided, at, at.t()};
     }
     bounds.renew(at.t(), last_step);
-    const int looks = pair.count() - first;
-    tries.hulls = looks % looks_between_hulls == 0;
-    tries.axes = near > looks_before_axes || tries.axes_paid ||
-                 (looks > 0 && looks % looks_between_axes == 0);
-    const double next = next_after(pair, bounds, at, tries);
+    const bool try_hulls = (pair.count() - first) % looks_between_hulls == 0;
+    const double next = next_after(pair, bounds, at, try_hulls, near > looks_before_axes);
     if (next >= std::min(duration, repeats)) {
       return {ToiStatus::separated, at, duration};
     }

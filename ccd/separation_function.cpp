@@ -193,11 +193,22 @@ void SeparationFunction::along_edges() {
   fixed_bend_ = 0.5 * weights * (relative * relative + drift + turn_.alpha_a + turn_.alpha_b);
   // n is not normalised: reach and error count |n| times, which grows at `relative` at most
   // (it may be infinite).
-  slope_ -= (motion_.reach() + k_.error) * relative;
+  const double around = motion_.reach() + k_.error;
+  if (!(motion_.reach() > 0.0)) {
+    slope_ -= around * relative;
+    return;
+  }
+  // While |n| is more than half of what it is, |n|'' <= |n''| + |n'|^2 / |n|.
+  const double turns = turn_.w_a + turn_.w_b;
+  const double second = turns * turns + turn_.alpha_a + turn_.alpha_b;
+  length_.crude = around * relative;
+  length_.rate = around * witness_.n.dot(n_rate);
+  length_.bend = 0.5 * around * (second + 2.0 * turns * turns / scale_);
+  length_.limit = 0.5 * scale_ / turns;
 }
 
 double SeparationFunction::tangent() const {
-  double slope = slope_;
+  double slope = slope_ - length_.slope(0.0);
   for (int i = 0; i < count_; ++i) {
     const Term& term = terms_[i];
     slope -= term.weight * (term.s > 0.0   ? term.rate
@@ -226,7 +237,7 @@ double SeparationFunction::chord(double h) const {
     growth += term.core->support(end) - term.support +
               support_rounding * term.core->extent() * (scale_ + end.lpNorm<1>());
   }
-  return slope_ - growth / h;
+  return slope_ - length_.slope(h) - growth / h;
 }
 
 double SeparationFunction::unknown_curvature(double horizon) const {
@@ -252,7 +263,7 @@ double SeparationFunction::unknown_curvature(double horizon) const {
 }
 
 double SeparationFunction::curvature(double horizon) const {
-  return known_curvature() - unknown_curvature(horizon);
+  return known_curvature() - unknown_curvature(horizon) - length_.second(horizon);
 }
 
 double SeparationFunction::rate() const { return (least_slope_ + rate_error_) / scale_; }
@@ -273,6 +284,9 @@ double SeparationFunction::first_reach(double horizon) const {
   double reach = std::min(horizon, 1.0 / (turn_.w_a + turn_.w_b));
   if (least_slope_ < 0.0) {
     reach = std::min(reach, -beyond_tangent * value_ / least_slope_);
+  }
+  if (length_.crude > 0.0) {
+    reach = std::min(reach, std::max(length_.limit, value_ / length_.crude));
   }
   return reach;
 }

@@ -47,6 +47,17 @@ class SeparationFunction {
     double support = 0.0;
   };
 
+  /// What is round counts |n| times along edges: the growth of that, over h.
+  struct Length {
+    double crude = 0.0;  ///< m/s; holds for all h
+    double rate = 0.0;   ///< m/s; at h = 0: with `bend`, m/s^2, holds up to the limit, s
+    double bend = 0.0;
+    double limit = 0.0;
+
+    [[nodiscard]] double slope(double h) const { return h <= limit ? rate : crude; }
+    [[nodiscard]] double second(double h) const { return h <= limit ? bend : 0.0; }
+  };
+
   void add_supports(const Vector3& half, const Matrix3& axes, const Vector3& g);
   /// `side`: 1 for a, whose support is along n, -1 for b. g: the rate of n seen from the body.
   void add_core(const ConvexCore& core, const Matrix3& R, double side, const Vector3& g);
@@ -96,6 +107,7 @@ class SeparationFunction {
   double distance_ = 0.0;      ///< |d|, where the curvature asks for it
   double speed_ = 0.0;         ///< |v|
   double c_ = 0.0;             ///< |c|
+  Length length_;
   int count_ = 0;
   Term terms_[6];
   int core_count_ = 0;
