@@ -18,6 +18,8 @@ using Kind = TouchFeature::Kind;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Times that differ by less than this part of a step count as one.
 constexpr double finest = 0x1p-46;
+/// Points of the surface are on a rim if they are this near to it, relative to its size.
+constexpr double near_rim = 1e-7;
 /// A corner belongs to a held feature if it is this near to it, relative to how far out both are.
 constexpr double same_corner = 1e-9;
 
@@ -72,6 +74,26 @@ struct Candidate {
   double least = 0.0;            ///< what comes nearer strikes, m
 };
 
+/// What is held of a body: a rim that is, or lies on a line or a face that is, is held, too.
+bool is_borne(const TouchFeature& extreme, const std::vector<TouchFeature>& held) {
+  const double size = extreme.at.norm() + extreme.radius;
+  int on_axis = 0;
+  int on_rim = 0;
+  for (const TouchFeature& h : held) {
+    if (h.kind == Kind::rim && h.at == extreme.at) {
+      return extreme.kind == Kind::rim;
+    }
+    const double out = Vector3(h.at.x(), 0.0, h.at.z()).norm();
+    on_axis += h.kind == Kind::rim || (h.radius > 0.0 && out <= same_corner * size) ? 1 : 0;
+    on_rim += extreme.kind == Kind::rim && h.kind == Kind::ball && h.radius == 0.0 &&
+                      std::abs(h.at.y() - extreme.at.y()) <= near_rim * size &&
+                      std::abs(out - extreme.radius) <= near_rim * size
+                  ? 1
+                  : 0;
+  }
+  return extreme.radius > 0.0 && (on_axis >= 2 || on_rim >= 3);
+}
+
 bool belongs(const TouchFeature& corner, const TouchFeature& held) {
   const Vector3 from = corner.at - held.at;
   const double size = corner.at.norm() + held.at.norm();
@@ -119,7 +141,11 @@ class Watcher {
   }
 
  private:
-  [[nodiscard]] double reach(const TouchFeature& f) const { return f.at.norm(); }
+  /// How far from the origin of the body what is followed of it is at most, m: the middle of a
+  /// ball, the points of a rim.
+  [[nodiscard]] double reach(const TouchFeature& f) const {
+    return f.at.norm() + (f.kind == Kind::rim ? f.radius : 0.0);
+  }
 
   /// `but_held`: what is held on such a face is not asked about.
   void add_plane(const TouchFeature& plane, bool of_a, bool but_held) {
@@ -131,13 +157,17 @@ class Watcher {
     const auto& corners = of_a ? watch_.pair.corners_b : watch_.pair.corners_a;
     auto& mine = of_a ? c.corners_b : c.corners_a;
     double arm = 0.0;
+    std::vector<TouchFeature> held;
+    for (const Touch& touch : watch_.held) {
+      if (but_held && (of_a ? touch.on_a : touch.on_b).kind == Kind::plane) {
+        held.push_back(of_a ? touch.on_b : touch.on_a);
+      }
+    }
     for (std::size_t k = 0; k < corners.size(); ++k) {
       const TouchFeature& corner = corners[k];
-      const bool is_held =
-          but_held && std::any_of(watch_.held.begin(), watch_.held.end(), [&](const Touch& touch) {
-            const TouchFeature& face = of_a ? touch.on_a : touch.on_b;
-            return face.kind == Kind::plane && belongs(corner, of_a ? touch.on_b : touch.on_a);
-          });
+      const bool is_held = std::any_of(held.begin(), held.end(),
+                                       [&](const TouchFeature& h) { return belongs(corner, h); }) ||
+                           is_borne(corner, held);
       if (!is_held) {
         mine.push_back(k);
         arm = std::max(arm, reach(corner));
@@ -203,7 +233,8 @@ class Watcher {
                  q.conjugate() * (of_a ? pair.apart : Vector3(-pair.apart)), 0.0};
         double highest = -infinity;
         for (const TouchFeature& corner : of_a ? pair.corners_a : pair.corners_b) {
-          highest = std::max(highest, plane.direction.dot(corner.at) + corner.radius);
+          highest = std::max(highest, -height_over(corner, corner.at, corner.direction,
+                                                   -plane.direction, Vector3::Zero()));
         }
         plane.at = highest * plane.direction;
         add_plane(plane, of_a, false);
@@ -311,17 +342,27 @@ class Watcher {
   struct Placed {
     BodyState a;
     BodyState b;
-    std::vector<Vector3> corners_a;
-    std::vector<Vector3> corners_b;
+    /// Its place and its axis.
+    struct Extreme {
+      Vector3 at;
+      Vector3 axis;
+    };
+    std::vector<Extreme> corners_a;
+    std::vector<Extreme> corners_b;
 
     Placed(const Watcher& of, double s)
         : a{of.watch_.motion_a.pose(s), {}}, b{of.watch_.motion_b.pose(s), {}} {
       for (const TouchFeature& corner : of.watch_.pair.corners_a) {
-        corners_a.push_back(a.pose.to_world(corner.at));
+        corners_a.push_back(placed(corner, a.pose));
       }
       for (const TouchFeature& corner : of.watch_.pair.corners_b) {
-        corners_b.push_back(b.pose.to_world(corner.at));
+        corners_b.push_back(placed(corner, b.pose));
       }
+    }
+    static Extreme placed(const TouchFeature& corner, const Pose& pose) {
+      return {pose.to_world(corner.at), corner.kind == Kind::rim
+                                            ? Vector3(pose.orientation * corner.direction)
+                                            : Vector3(Vector3::Zero())};
     }
   };
 
@@ -334,11 +375,11 @@ class Watcher {
   /// How far the lowest of these corners is above the plane through q with this normal, m.
   [[nodiscard]] static double lowest(const std::vector<std::size_t>& which,
                                      const std::vector<TouchFeature>& corners,
-                                     const std::vector<Vector3>& placed, const Vector3& n,
+                                     const std::vector<Placed::Extreme>& placed, const Vector3& n,
                                      const Vector3& q) {
     double least = infinity;
     for (const std::size_t k : which) {
-      least = std::min(least, n.dot(placed[k] - q) - corners[k].radius);
+      least = std::min(least, height_over(corners[k], placed[k].at, placed[k].axis, n, q));
     }
     return least;
   }

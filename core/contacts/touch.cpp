@@ -64,6 +64,37 @@ TouchNow ball_on_plane(const Placed& a, const Placed& b) {
   return now;
 }
 
+/// A rim of b over a plane of a, tilted from it: its lowest point goes round it as it rolls.
+TouchNow rim_on_plane(const Placed& a, const Placed& b) {
+  const Vector3& n = a.direction;
+  const Vector3& e = b.direction;
+  const double s = n.dot(e);
+  const Vector3 up = n - s * e;  // of the plane of the rim
+  const double k = up.norm();
+  const Vector3 u = up / k;
+  TouchNow now;
+  now.normal = n;
+  now.gap = n.dot(b.at - a.at) - b.radius * k;
+  now.point_b = b.at - b.radius * u;
+  now.point_a = now.point_b - now.gap * n;
+  const Vector3 n_rate = a.w.cross(n);
+  const Vector3 e_rate = b.w.cross(e);
+  const Vector3 w = b.w - a.w;
+  const double s_rate = n.dot(w.cross(e));
+  const double s_second = n_rate.dot(w.cross(e)) + n.dot(w.cross(e_rate));
+  const double k_second =
+      -(s_rate * s_rate + s * s_second) / k - s * s * s_rate * s_rate / (k * k * k);
+  const Vector3 centre = b.velocity(b.at);
+  const Vector3 slip = centre - a.velocity(b.at);
+  now.normal_bias = n.dot(b.centripetal(b.at) - a.centripetal(b.at) - 2.0 * a.w.cross(slip)) -
+                    b.radius * k_second;
+  now.velocity = b.velocity(now.point_b) - a.velocity(now.point_a);
+  const Vector3 up_rate = n_rate - s_rate * e - s * e_rate;
+  const Vector3 x_rate = centre - b.radius * (up_rate - u * u.dot(up_rate)) / k;
+  now.bias = b.w.cross(x_rate - b.v) - a.w.cross(x_rate - a.v);
+  return now;
+}
+
 TouchNow ball_on_ball(const Placed& a, const Placed& b) {
   const Vector3 between = b.at - a.at;
   const double distance = between.norm();
@@ -230,17 +261,81 @@ std::optional<TouchFeature> ball_feature(const Shape& shape, const Vector3& x,
 /// What is perpendicular to an edge has no more than this along it.
 constexpr double across_an_edge = 1e-6;
 
+/// Radius and half the length of the side of a capsule or a cylinder, which is about y.
+struct RoundSide {
+  double radius = 0.0;
+  double half = 0.0;
+  bool ends_at_rims = false;
+};
+
+std::optional<RoundSide> round_side(const Shape& shape) {
+  if (const auto* capsule = std::get_if<Capsule>(&shape); capsule && capsule->length > 0.0) {
+    return RoundSide{capsule->radius, 0.5 * capsule->length, false};
+  }
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
+    return RoundSide{cylinder->radius, 0.5 * cylinder->length, true};
+  }
+  return std::nullopt;
+}
+
+/// The rims of a cylinder, or that of a cone.
+std::vector<TouchFeature> rims_of_shape(const Shape& shape) {
+  std::vector<TouchFeature> rims;
+  const auto add = [&](double y, double radius) {
+    rims.push_back({Kind::rim, y * Vector3::UnitY(), Vector3::UnitY(), radius});
+  };
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
+    add(-0.5 * cylinder->length, cylinder->radius);
+    add(0.5 * cylinder->length, cylinder->radius);
+  } else if (const auto* cone = std::get_if<Cone>(&shape)) {
+    add(-0.25 * cone->height, cone->radius);
+  }
+  return rims;
+}
+
+/// The rim that a point of the surface (body frame) is on, where it is tilted from what it touches:
+/// of one that lies flat no point touches alone.
+std::optional<TouchFeature> rim_feature(const Shape& shape, const Vector3& x,
+                                        const Vector3& outward) {
+  constexpr double flat = 1e-4;  // rad
+  for (const TouchFeature& rim : rims_of_shape(shape)) {
+    const double out = Vector3(x.x(), 0.0, x.z()).norm();
+    const double size = rim.radius + std::abs(rim.at.y());
+    if (std::abs(x.y() - rim.at.y()) <= near_vertex * size &&
+        std::abs(out - rim.radius) <= near_vertex * size &&
+        Vector3(outward.x(), 0.0, outward.z()).norm() >= flat) {
+      return rim;
+    }
+  }
+  return std::nullopt;
+}
+
+/// A ball about the place on the axis of a round side at which it touches a plane: as the side,
+/// while that is across it.
+std::optional<TouchFeature> place_on_side(const Shape& shape, const Vector3& x,
+                                          const Vector3& outward) {
+  const auto side = round_side(shape);
+  if (!side || std::abs(outward.y()) > across_an_edge) {
+    return std::nullopt;
+  }
+  const Vector3 from = x - side->radius * outward;
+  if (Vector3(from.x(), 0.0, from.z()).norm() > near_vertex * side->radius) {
+    return std::nullopt;
+  }
+  return TouchFeature{Kind::ball, from.y() * Vector3::UnitY(), Vector3::Zero(), side->radius};
+}
+
 /// The edge nearest to a point of the surface, of those that `across` (outward) is perpendicular
 /// to, or tilted from that by so much; of a capsule its axis.
 std::optional<TouchFeature> line_feature(const Shape& shape, const Vector3& x,
                                          const Vector3& across, double tilted = across_an_edge) {
-  if (const auto* capsule = std::get_if<Capsule>(&shape)) {
-    const Vector3 from = x - capsule->radius * across;
-    const bool side = capsule->length > 0.0 && std::abs(across.y()) <= tilted &&
-                      Vector3(from.x(), 0.0, from.z()).norm() <= near_vertex * capsule->radius;
-    return side ? std::optional(
-                      TouchFeature{Kind::line, Vector3::Zero(), Vector3::UnitY(), capsule->radius})
-                : std::nullopt;
+  if (const auto side = round_side(shape)) {
+    const Vector3 from = x - side->radius * across;
+    const bool is_on = std::abs(across.y()) <= tilted &&
+                       Vector3(from.x(), 0.0, from.z()).norm() <= near_vertex * side->radius;
+    return is_on ? std::optional(
+                       TouchFeature{Kind::line, Vector3::Zero(), Vector3::UnitY(), side->radius})
+                 : std::nullopt;
   }
   const auto c = polytope_corners(shape);
   if (!c || c->rounding > 0.0) {
@@ -330,7 +425,12 @@ std::optional<Touch> crossing(const Shape& shape_a, const Pose& a, const Vector3
 
 /// Whether a feature is that of a ball, which is round.
 bool is_round(const std::optional<TouchFeature>& feature) {
-  return feature && feature->radius > 0.0;
+  return feature && feature->kind == Kind::ball && feature->radius > 0.0;
+}
+
+/// Where a corner or a rim that touches at x is, body frame.
+Vector3 place_of(const TouchFeature& feature, const Vector3& x) {
+  return feature.kind == Kind::rim ? x : feature.at;
 }
 
 }  // namespace
@@ -345,10 +445,10 @@ TouchNow look_at_bodies(const Touch& touch, const BodyState& state_a, const Body
     return line_on_line(a, b, touch.normal);
   }
   if (touch.on_a.kind == Kind::plane) {
-    return ball_on_plane(a, b);
+    return touch.on_b.kind == Kind::rim ? rim_on_plane(a, b) : ball_on_plane(a, b);
   }
   if (touch.on_b.kind == Kind::plane) {
-    return turned_round(ball_on_plane(b, a));
+    return turned_round(touch.on_a.kind == Kind::rim ? rim_on_plane(b, a) : ball_on_plane(b, a));
   }
   if (touch.on_a.kind == Kind::line) {
     return ball_on_line(a, b);
@@ -402,8 +502,29 @@ std::optional<std::vector<TouchFeature>> corners_of(const Shape& shape) {
   return corners;
 }
 
+std::optional<std::vector<TouchFeature>> extremes_of(const Shape& shape) {
+  std::vector<TouchFeature> rims = rims_of_shape(shape);
+  if (rims.empty()) {
+    return corners_of(shape);
+  }
+  if (const auto* cone = std::get_if<Cone>(&shape)) {
+    rims.push_back({Kind::ball, 0.75 * cone->height * Vector3::UnitY(), Vector3::Zero(), 0.0});
+  }
+  return rims;
+}
+
+double height_over(const TouchFeature& extreme, const Vector3& at, const Vector3& axis,
+                   const Vector3& n, const Vector3& q) {
+  const double middle = n.dot(at - q);
+  return middle - (extreme.kind == Kind::rim ? extreme.radius * (n - axis * axis.dot(n)).norm()
+                                             : extreme.radius);
+}
+
 std::vector<TouchFeature> faces_of(const Shape& shape) {
   std::vector<TouchFeature> faces;
+  for (const TouchFeature& rim : rims_of_shape(shape)) {
+    faces.push_back({Kind::plane, rim.at, std::copysign(1.0, rim.at.y()) * Vector3::UnitY(), 0.0});
+  }
   if (const auto* box = std::get_if<Box>(&shape)) {
     for (int k = 0; k < 3; ++k) {
       for (const double side : {-1.0, 1.0}) {
@@ -445,6 +566,12 @@ TouchFeature face_feature(const Shape& shape, const Vector3& x, const Vector3& o
         nearest = n.dot(outward);
         face.direction = n;
       }
+    }
+  }
+  for (const TouchFeature& flat : faces_of(shape)) {
+    if (flat.direction.y() * outward.y() > 0.0 && std::abs(flat.direction.y()) == 1.0 &&
+        !rims_of_shape(shape).empty()) {
+      return flat;
     }
   }
   if (const auto c = polytope_corners(shape)) {
@@ -492,12 +619,21 @@ std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point
         manifold.face_of_a ? std::optional(face_feature(shape_a, on_a, n_A)) : std::nullopt;
     const std::optional<TouchFeature> face_b =
         manifold.face_of_b ? std::optional(face_feature(shape_b, on_b, -n_B)) : std::nullopt;
-    const double past_a = corner_b && face_a
-                              ? beyond_region(*face_a, shape_a, a.to_body(b.to_world(corner_b->at)))
-                              : infinity;
-    const double past_b = corner_a && face_b
-                              ? beyond_region(*face_b, shape_b, b.to_body(a.to_world(corner_a->at)))
-                              : infinity;
+    // A round side rolls on the face of the other.
+    const auto rolls = [](const Shape& shape, const Vector3& x, const Vector3& outward) {
+      auto rim = rim_feature(shape, x, outward);
+      return rim ? rim : place_on_side(shape, x, outward);
+    };
+    corner_a = corner_a || !face_b ? corner_a : rolls(shape_a, on_a, n_A);
+    corner_b = corner_b || !face_a ? corner_b : rolls(shape_b, on_b, -n_B);
+    const double past_a =
+        corner_b && face_a
+            ? beyond_region(*face_a, shape_a, a.to_body(b.to_world(place_of(*corner_b, on_b))))
+            : infinity;
+    const double past_b =
+        corner_a && face_b
+            ? beyond_region(*face_b, shape_b, b.to_body(a.to_world(place_of(*corner_a, on_a))))
+            : infinity;
     // A corner that has gone over the rim of the face is on it no more: its edge is, at the rim.
     const double size = radius_of(shape_a) + radius_of(shape_b);
     if (std::min(past_a, past_b) > gone_over * size) {
@@ -522,6 +658,13 @@ std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point
   }
   const auto edge_a = line_feature(shape_a, on_a, n_A);
   const auto edge_b = line_feature(shape_b, on_b, -n_B);
+  if (edge_a && edge_b && !corner_a && !corner_b &&
+      (a.orientation * edge_a->direction).cross(b.orientation * edge_b->direction).norm() <
+          across_an_edge) {
+    // Sides that are parallel touch at both ends.
+    corner_a = place_on_side(shape_a, on_a, n_A);
+    corner_b = corner_a ? edge_b : place_on_side(shape_b, on_b, -n_B);
+  }
   if ((corner_a || edge_a) && (corner_b || edge_b)) {
     touch.on_a = corner_a ? *corner_a : *edge_a;
     touch.on_b = corner_b ? *corner_b : *edge_b;

@@ -17,10 +17,12 @@ struct TouchFeature {
     ball,   ///< all within `radius` of a point; radius 0: a vertex
     plane,  ///< of a face
     line,   ///< of an edge; with a radius all within that of it: the side of a capsule
+    rim,    ///< a circle, of this radius, about `at` and across `direction`: it touches planes
   };
   Kind kind = Kind::ball;
   Vector3 at = Vector3::Zero();         ///< body frame, m
-  Vector3 direction = Vector3::Zero();  ///< outward normal, or along the line; body frame, unit
+  Vector3 direction = Vector3::Zero();  ///< outward normal, along the line, or the axis of the
+                                        ///< rim; body frame, unit
   double radius = 0.0;                  ///< m
 };
 
@@ -63,7 +65,17 @@ struct TouchNow {
 /// that has no corners.
 [[nodiscard]] std::optional<std::vector<TouchFeature>> corners_of(const Shape& shape);
 
-/// The faces of a box or of a hull without rounding, each a plane; empty for others.
+/// What of a shape is above a plane if all of the shape is: `corners_of`, or the rims of a cylinder
+/// and the rim and the apex of a cone. nullopt: of a mesh or a compound that is not known.
+[[nodiscard]] std::optional<std::vector<TouchFeature>> extremes_of(const Shape& shape);
+
+/// How far the lowest point of a corner or a rim at `at` with this axis is above the plane through
+/// q with normal n, m; all in one frame.
+[[nodiscard]] double height_over(const TouchFeature& extreme, const Vector3& at,
+                                 const Vector3& axis, const Vector3& n, const Vector3& q);
+
+/// The faces of a box or of a hull without rounding, and of what is round the flat ones, each a
+/// plane; empty for others.
 [[nodiscard]] std::vector<TouchFeature> faces_of(const Shape& shape);
 
 /// The edges of a box or of a hull without rounding, each a line; empty for others.

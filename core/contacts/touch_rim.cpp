@@ -103,9 +103,30 @@ std::optional<Sides> corner_sides(const Polytope& p, const Vector3& at) {
   return std::nullopt;
 }
 
+/// The radius of the flat face of what is round; 0: it is no such face.
+double radius_of_disc(const TouchFeature& feature, const Shape& shape) {
+  if (feature.kind != Kind::plane) {
+    return 0.0;
+  }
+  const auto* cylinder = std::get_if<Cylinder>(&shape);
+  const auto* cone = std::get_if<Cone>(&shape);
+  return cylinder != nullptr ? cylinder->radius : cone != nullptr ? cone->radius : 0.0;
+}
+
 /// The region of space that is nearest to a feature, as far as `TouchRim` asks.
 std::optional<Sides> region(const TouchFeature& feature, const Shape& shape) {
   if (std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<Sphere>(shape)) {
+    return Sides{};
+  }
+  if (feature.kind == Kind::rim) {
+    return Sides{};
+  }
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape);
+      cylinder && feature.kind == Kind::line) {
+    const double end = 0.5 * cylinder->length;
+    return Sides{{Vector3::UnitY(), end}, {-Vector3::UnitY(), end}};
+  }
+  if (radius_of_disc(feature, shape) > 0.0) {
     return Sides{};
   }
   if (const auto* capsule = std::get_if<Capsule>(&shape)) {
@@ -116,6 +137,7 @@ std::optional<Sides> region(const TouchFeature& feature, const Shape& shape) {
       case Kind::line:
         return Sides{{Vector3::UnitY(), end}, {-Vector3::UnitY(), end}};
       case Kind::plane:
+      case Kind::rim:
         return std::nullopt;
     }
   }
@@ -133,9 +155,14 @@ std::optional<Sides> region(const TouchFeature& feature, const Shape& shape) {
 
 /// Whether a ball feature is a ball or a corner of the shape, and not where two edges cross.
 bool is_corner(const TouchFeature& feature, const Shape& shape) {
-  const auto corners = corners_of(shape);
+  const auto corners = extremes_of(shape);
   return corners && std::any_of(corners->begin(), corners->end(),
                                 [&](const TouchFeature& c) { return c.at == feature.at; });
+}
+
+/// How far x is beyond a disc about the y axis, m.
+double beyond_disc(double radius, const Vector3& x) {
+  return Vector3(x.x(), 0.0, x.z()).norm() - radius;
 }
 
 double beyond_sides(const Sides& sides, const Vector3& x) {
@@ -150,12 +177,14 @@ double beyond_sides(const Sides& sides, const Vector3& x) {
 
 double TouchRim::beyond(const Touch& touch, const BodyState& a, const BodyState& b) const {
   const Pose& own = of_a ? a.pose : b.pose;
+  Vector3 at = (of_a ? b : a).pose.to_world((of_a ? touch.on_b : touch.on_a).at);
   if (of_lines) {
     const TouchNow now = look_at(touch, a, b);
-    return beyond_sides(sides, own.to_body(of_a ? now.point_a : now.point_b));
+    at = of_a ? now.point_a : now.point_b;
   }
-  const Vector3 middle = (of_a ? b : a).pose.to_world((of_a ? touch.on_b : touch.on_a).at);
-  return beyond_sides(sides, own.to_body(middle));
+  const Vector3 x = own.to_body(at);
+  const double beyond = beyond_sides(sides, x);
+  return radius > 0.0 ? std::max(beyond, beyond_disc(radius, x)) : beyond;
 }
 
 std::optional<std::vector<TouchRim>> rims_of(const Touch& touch, const Shape& a, const Shape& b) {
@@ -167,7 +196,7 @@ std::optional<std::vector<TouchRim>> rims_of(const Touch& touch, const Shape& a,
     // A cap ends where its side begins.
     const bool cap = feature.kind == Kind::ball && other.kind == Kind::line &&
                      std::holds_alternative<Capsule>(of_a ? a : b);
-    const bool of_lines = lines || cap;
+    const bool of_lines = lines || cap || other.kind == Kind::rim;
     if (!of_lines && (other.kind != Kind::ball || !is_corner(other, of_a ? b : a))) {
       continue;
     }
@@ -181,8 +210,9 @@ std::optional<std::vector<TouchRim>> rims_of(const Touch& touch, const Shape& a,
         return std::abs(side.normal.dot(feature.direction)) < 0.5;
       });
     }
-    if (!sides->empty()) {
-      rims.push_back({std::move(*sides), of_a, of_lines});
+    const double radius = radius_of_disc(feature, of_a ? a : b);
+    if (!sides->empty() || radius > 0.0) {
+      rims.push_back({std::move(*sides), radius, of_a, of_lines});
     }
   }
   return rims;
@@ -202,7 +232,9 @@ std::optional<std::vector<TouchRim::Side>> sides_of_face(const Shape& shape,
 
 double beyond_region(const TouchFeature& feature, const Shape& shape, const Vector3& x) {
   const auto sides = region(feature, shape);
-  return sides ? beyond_sides(*sides, x) : infinity;
+  const double radius = radius_of_disc(feature, shape);
+  const double beyond = sides ? beyond_sides(*sides, x) : infinity;
+  return radius > 0.0 ? std::max(beyond, beyond_disc(radius, x)) : beyond;
 }
 
 }  // namespace core

@@ -19,7 +19,8 @@ struct TouchRim {
     Vector3 normal = Vector3::Zero();  ///< unit, body frame
     double offset = 0.0;               ///< m
   };
-  std::vector<Side> sides;  ///< none: the feature has no end
+  std::vector<Side> sides;  ///< none, and no radius: the feature has no end
+  double radius = 0.0;      ///< of a disc about the body's y axis, m; 0: it is none
   bool of_a = false;        ///< the feature is that of a
   bool of_lines = false;    ///< the point is where they touch, otherwise the middle of the ball
 

@@ -54,9 +54,10 @@ auto slope(const F& f, double h) {
 }  // namespace
 
 TEST_CASE("velocities and accelerations of touches are derivatives", "[friction]") {
-  // All pairs of features that touch in one point: balls, planes, edges, sides of capsules.
+  // All pairs of features that touch in one point: balls, planes, edges, sides of capsules, rims.
   Random random(20261130);
-  const std::pair<Kind, Kind> pairs[] = {{Kind::ball, Kind::plane}, {Kind::plane, Kind::ball},
+  const std::pair<Kind, Kind> pairs[] = {{Kind::rim, Kind::plane},  {Kind::plane, Kind::rim},
+                                         {Kind::ball, Kind::plane}, {Kind::plane, Kind::ball},
                                          {Kind::ball, Kind::ball},  {Kind::line, Kind::ball},
                                          {Kind::ball, Kind::line},  {Kind::line, Kind::line}};
   for (int trial = 0; trial < 600; ++trial) {

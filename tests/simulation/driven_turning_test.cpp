@@ -112,7 +112,7 @@ TEST_CASE("driven, turning: a ball rolls on a table that shakes", "[driven][turn
 }
 
 // On a turntable v = 2/7 W y x r + const: from rest in the middle of what it is added to it goes
-// round by 2/7 of the turn [Earnshaw1844]; at a constant rate on a circle, once in 7/2 turns.
+// round by 2/7 of the turn; at a constant rate on a circle, once in 7/2 turns.
 TEST_CASE("driven, turning: a ball on a turntable goes round two sevenths as fast",
           "[driven][turning]") {
   const std::string swings =

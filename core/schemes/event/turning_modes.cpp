@@ -244,13 +244,12 @@ std::string EventModes::add_touches(Gathered& found, Instant t, Turning& turning
     const auto [a, b] = found.pairs[p];
     const GroupPatch& patch = found.group.patches[p];
     const ContactManifold& m = patch.manifold;
-    auto corners_a = corners_of(run_.model.shape(a));
-    auto corners_b = corners_of(run_.model.shape(b));
+    auto corners_a = extremes_of(run_.model.shape(a));
+    auto corners_b = extremes_of(run_.model.shape(b));
     const Pose& at_a = found.states[patch.a].pose;
     const Pose& at_b = found.states[patch.b].pose;
     if (!corners_a || !corners_b) {
-      return fmt::format("{} touch, one turns, and one is round along a rim, a mesh or a compound",
-                         run_.names(a, b));
+      return fmt::format("{} touch, one turns, and one is a mesh or a compound", run_.names(a, b));
     }
     TurningPair pair{patch.a,
                      patch.b,
