@@ -28,6 +28,11 @@ bool clear_of(const Shape& shape, const Pose& pose, const Vector3& origin, doubl
   return up.dot(origin - pose.position) > radius + 1e-9 * sizes;
 }
 
+/// Nearest points of cylinders and cones come from a search, and are some more roundings off.
+bool is_round(const Shape& shape) {
+  return std::holds_alternative<Cylinder>(shape) || std::holds_alternative<Cone>(shape);
+}
+
 bool held(BodyIndex a, BodyIndex b, std::span<const char> in_hand) {
   return !in_hand.empty() && (in_hand[a] != 0 || in_hand[b] != 0);
 }
@@ -103,7 +108,8 @@ double PenetrationProbe::depth(BodyIndex a, const Pose& pose_a, BodyIndex b,
   const double gap = detector_->overlap(shape_a, pose_a, shape_b, pose_b).gap;
   const double scale = pose_a.position.norm() + pose_b.position.norm() + finite_radius(shape_a) +
                        finite_radius(shape_b);
-  const double touching = 16.0 * std::numeric_limits<double>::epsilon() * scale;
+  const double roundings = is_round(shape_a) || is_round(shape_b) ? 64.0 : 16.0;
+  const double touching = roundings * std::numeric_limits<double>::epsilon() * scale;
   return gap < -touching ? -gap : 0.0;
 }
 
