@@ -106,7 +106,7 @@ bool EventModes::settle_once(std::span<const BodyIndex> seeds, Instant t, const 
     return false;
   }
   if (found.driven && found.hangs.empty() && !options.not_flat &&
-      settle_driven(found, t, adopt, options)) {
+      (let_go(found, t, adopt, options) || settle_driven(found, t, adopt, options))) {
     return true;
   }
   if (found.pairs.size() < options.pairs) {
@@ -140,6 +140,19 @@ bool EventModes::settle_once(std::span<const BodyIndex> seeds, Instant t, const 
     return true;
   }
   return (options.may_turn || has_turned(seeds)) && settle_turning(seeds, t, adopt, options);
+}
+
+/// What carried it, and is driven, is slower all at once: it goes on by itself.
+bool EventModes::let_go(const Gathered& found, Instant t, const Adopt& adopt,
+                        const SettleOptions& options) {
+  if (!found.pairs.empty() || !options.may_turn || options.pressed) {
+    return false;
+  }
+  FlatMode mode;
+  mode.velocities = found.group.velocities;
+  mode.accelerations = found.group.loads;
+  commit(found, mode, t, adopt);
+  return true;
 }
 
 /// Settles a group in which nothing turns; false, with `why_not_`, if something must.

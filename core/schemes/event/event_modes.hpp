@@ -243,6 +243,8 @@ class EventModes {
   void book_lift(const Gathered& found, Instant t);
   void carry_on(const Gathered& found, const Turning& turning, Instant t, const Adopt& adopt);
   void end_together(const Gathered& found, const FlatMode& mode, Instant end, bool strikes);
+  [[nodiscard]] bool let_go(const Gathered& found, Instant t, const Adopt& adopt,
+                            const SettleOptions& options);
   [[nodiscard]] bool settle_driven(Gathered found, Instant t, const Adopt& adopt,
                                    const SettleOptions& options);
   [[nodiscard]] static double speed(const Gathered& found, const GroupPatch& patch);
