@@ -58,7 +58,7 @@ std::string EventContacts::unkept() const {
   std::string text = modes_.why_not().empty()
                          ? std::string(lasting_contact_advice)
                          : fmt::format("{}; {}", modes_.why_not(), lasting_contact_advice);
-  if (run_.model.has_friction()) {
+  if (run_.model.has_friction() && run_.model.scene().joints.empty()) {
     text +=
         "; schemes that treat friction between bodies that turn: moreau-jean, pgs, xpbd, penalty";
   }

@@ -16,11 +16,10 @@ inline namespace core {
 
 /// What a person can do about bodies that stay in touch: the end of a stop's reason.
 inline constexpr std::string_view lasting_contact_advice =
-    "event-driven keeps contact that lasts in three cases: loads are constant and nothing turns; "
-    "one body that does not turn lies on a driven face; bodies (balls, "
-    "capsules, boxes, hulls) turn while they touch; "
-    "allowed: bodies that start apart, a restitution of 1, another scheme (--scheme), or a run "
-    "that ends before (--duration)";
+    "event-driven keeps in touch what does not turn, and balls, capsules, boxes, hulls, cylinders "
+    "and cones that do; meshes and compounds at faces only (parts that a weld joins are bodies of "
+    "their own); allowed: another shape, another scheme (--scheme), or a run that ends before "
+    "(--duration)";
 
 /// What the parts of an event-driven run share besides what every run has: what is due, how far
 /// predictions go, and how much work is left.

@@ -12,7 +12,7 @@ inline namespace core {
 namespace {
 
 /// A body that turns has so many steps in a frame at most in which forces are those of an instant.
-constexpr int most_exact_steps = 500;
+constexpr int most_exact_steps = 150;
 /// An implicit step takes this part of a frame at most, and so many follow each other before forces
 /// at an instant are looked for again: twice as many each time that there are none.
 constexpr double implicit_part = 1.0 / 16.0;

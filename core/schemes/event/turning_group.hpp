@@ -13,6 +13,8 @@ struct TurningLimits {
   /// After so many of them steps are implicit: what slides turns its direction, or stops, within
   /// what such a step cannot tell.
   static constexpr int few_short_steps = 50;
+  /// One that ends where it begins, since its forces do not hold, counts as so many short ones.
+  static constexpr int of_stall = 10;
   /// Forces at an instant are looked for of so many free bodies that turn: of more they are found
   /// too slowly.
   static constexpr std::ptrdiff_t most_bodies = 24;

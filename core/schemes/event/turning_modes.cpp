@@ -504,7 +504,10 @@ void EventModes::carry_on(const Gathered& found, const Turning& turning, Instant
     if (Patch* const patch = graph_.find(a, b)) {
       const double tried = turning.step.stepped;
       const bool is_short = tried < short_step * run_.mean_frame;
-      patch->short_steps = is_short ? patch->short_steps + 1 : 0;
+      // Forces that hold for no time at all, again and again, are as good as none.
+      const bool stalls = turning.step.end == TurningEnd::forces && !has_joints(found) &&
+                          turning.step.duration < least_in_touch * run_.mean_frame;
+      patch->short_steps += stalls ? TurningLimits::of_stall : is_short ? 1 : -patch->short_steps;
       patch->step = turning.step.halved ? tried : std::max(patch->step, 2.0 * tried);
       count_implicit(turning, left, is_short, *patch);
     }
