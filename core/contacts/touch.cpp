@@ -261,6 +261,10 @@ std::optional<TouchFeature> ball_feature(const Shape& shape, const Vector3& x,
 /// What is perpendicular to an edge has no more than this along it.
 constexpr double across_an_edge = 1e-6;
 
+/// A point of the surface is on a round side if it is this near to it, relative to its radius:
+/// where two of them touch at no distance their normal is known to the root of roundoff.
+constexpr double near_side = 1e-5;
+
 /// Radius and half the length of the side of a capsule or a cylinder, which is about y.
 struct RoundSide {
   double radius = 0.0;
@@ -319,7 +323,7 @@ std::optional<TouchFeature> place_on_side(const Shape& shape, const Vector3& x,
     return std::nullopt;
   }
   const Vector3 from = x - side->radius * outward;
-  if (Vector3(from.x(), 0.0, from.z()).norm() > near_vertex * side->radius) {
+  if (Vector3(from.x(), 0.0, from.z()).norm() > near_side * side->radius) {
     return std::nullopt;
   }
   return TouchFeature{Kind::ball, from.y() * Vector3::UnitY(), Vector3::Zero(), side->radius};
@@ -332,7 +336,7 @@ std::optional<TouchFeature> line_feature(const Shape& shape, const Vector3& x,
   if (const auto side = round_side(shape)) {
     const Vector3 from = x - side->radius * across;
     const bool is_on = std::abs(across.y()) <= tilted &&
-                       Vector3(from.x(), 0.0, from.z()).norm() <= near_vertex * side->radius;
+                       Vector3(from.x(), 0.0, from.z()).norm() <= near_side * side->radius;
     return is_on ? std::optional(
                        TouchFeature{Kind::line, Vector3::Zero(), Vector3::UnitY(), side->radius})
                  : std::nullopt;

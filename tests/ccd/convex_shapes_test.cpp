@@ -259,3 +259,25 @@ TEST_CASE("points whose volume rounding hides are no hull", "[hull]") {
     CHECK_THROWS_AS(convex_hull(points), std::invalid_argument);
   }
 }
+
+// Their gap stays as it is, while the place at which they are nearest runs along both. What is
+// round counts the length of the direction across two edges, and that by its own rate: as fast as
+// it could change at most, a look told nothing about more than 1e-10 s.
+TEST_CASE("capsules that slide along each other, nearly in touch, take few looks", "[ccd]") {
+  const Shape capsule = Capsule{0.1, 2.0};
+  for (const double angle : {0.1, 0.5, 1.2}) {
+    for (const double gap : {1e-9, 1e-7}) {
+      CAPTURE(angle, gap);
+      const Quaternion lying = rotate(Vector3(0, 0, -0.5 * pi), Quaternion::Identity());
+      const Quaternion across = rotate(Vector3(0, angle, 0), lying);
+      const Pose above{{0.3, 0.2 + gap, 0.02}, across};
+      const Motion slides = moving(above, {1.0, 0.0, 0.5}, {0.0, 5.0, 0.0});
+      const auto certified = ccd::make_certified();
+      const TimeOfImpact toi = certified->time_of_impact(
+          {capsule, moving(Pose{Vector3::Zero(), lying}, Vector3::Zero())}, {capsule, slides},
+          {Instant{}, 1e-3}, 0.0);
+      CHECK(toi.status == ToiStatus::separated);
+      CHECK(toi.evaluations < 200);
+    }
+  }
+}

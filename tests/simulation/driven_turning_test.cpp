@@ -233,7 +233,9 @@ TEST_CASE("driven, turning: a table that shakes tips a tall box", "[driven][turn
   }
 }
 
-// What happens on a table that goes straight on is what happens on one at rest.
+// What happens on a table that goes straight on is what happens on one at rest: exact steps are as
+// exact there; implicit ones, in which a box that has fallen comes to rest, are of first order and
+// begin elsewhere.
 TEST_CASE("driven, turning: nothing tells that a table goes straight on", "[driven][turning]") {
   const Vector3 velocity(0.7, 0.3, -0.4);
   const std::string shapes[] = {
@@ -257,10 +259,11 @@ TEST_CASE("driven, turning: nothing tells that a table goes straight on", "[driv
       CAPTURE(t);
       const BodyState seen = there.trajectory.at(1, Instant{} + t);
       const BodyState known = here.trajectory.at(1, Instant{} + t);
-      CHECK((seen.pose.position - t * velocity - known.pose.position).norm() <= 1e-7);
+      const double off = t <= 0.2 ? 1e-8 : 2e-6;
+      CHECK((seen.pose.position - t * velocity - known.pose.position).norm() <= off);
       if (shape.find("sphere") == std::string::npos) {  // how a ball is turned is not followed
         CHECK((seen.pose.orientation.toRotationMatrix() - known.pose.orientation.toRotationMatrix())
-                  .norm() <= 1e-6);
+                  .norm() <= 20.0 * off);
       }
     }
   }
