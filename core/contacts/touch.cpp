@@ -262,8 +262,8 @@ std::optional<TouchFeature> ball_feature(const Shape& shape, const Vector3& x,
 constexpr double across_an_edge = 1e-6;
 
 /// A point of the surface is on a round side if it is this near to it, relative to its radius:
-/// where two of them touch at no distance their normal is known to the root of roundoff.
-constexpr double near_side = 1e-5;
+/// where two of them touch at hardly any distance their normal is known only so well.
+constexpr double near_side = 1e-3;
 
 /// Radius and half the length of the side of a capsule or a cylinder, which is about y.
 struct RoundSide {
