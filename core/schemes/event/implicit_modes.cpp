@@ -16,6 +16,9 @@ constexpr int most_exact_steps = 150;
 /// An implicit step takes this part of a frame at most, and so many follow each other before forces
 /// at an instant are looked for again: twice as many each time that there are none.
 constexpr double implicit_part = 1.0 / 16.0;
+/// The same of few touches: these steps are of first order, and cost little there.
+constexpr double part_of_few = 1.0 / 128.0;
+constexpr std::size_t few_touches = 4;
 constexpr int first_stretch = 16;
 constexpr int longest_stretch = 1024;
 constexpr int most_halvings = 30;
@@ -70,7 +73,8 @@ bool EventModes::step_over(const Gathered& found, Turning& turning, Instant t,
   }
   const double frame = run_.options.step > 0.0 ? run_.options.step : run_.mean_frame;
   const double before = implicit_steps(found).second > 0 ? next_step(found) : frame;
-  double h = std::min({implicit_part * frame, given_until(turning, t), before});
+  const bool few = turning.group.start.touches.size() <= few_touches;
+  double h = std::min({(few ? part_of_few : implicit_part) * frame, given_until(turning, t), before});
   bool halved = false;
   int refused = 0;
   for (int round = 0; round < most_halvings; ++round, h *= 0.5, halved = true) {
