@@ -265,21 +265,13 @@ constexpr double across_an_edge = 1e-6;
 /// where two of them touch at hardly any distance their normal is known only so well.
 constexpr double near_side = 1e-3;
 
-/// Radius and half the length of the side of a capsule or a cylinder, which is about y.
-struct RoundSide {
-  double radius = 0.0;
-  double half = 0.0;
-  bool ends_at_rims = false;
-};
-
-std::optional<RoundSide> round_side(const Shape& shape) {
+/// The radius of the side of a capsule or a cylinder, which is about y.
+std::optional<double> radius_of_side(const Shape& shape) {
   if (const auto* capsule = std::get_if<Capsule>(&shape); capsule && capsule->length > 0.0) {
-    return RoundSide{capsule->radius, 0.5 * capsule->length, false};
+    return capsule->radius;
   }
-  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
-    return RoundSide{cylinder->radius, 0.5 * cylinder->length, true};
-  }
-  return std::nullopt;
+  const auto* cylinder = std::get_if<Cylinder>(&shape);
+  return cylinder != nullptr ? std::optional(cylinder->radius) : std::nullopt;
 }
 
 /// The rims of a cylinder, or that of a cone.
@@ -295,6 +287,11 @@ std::vector<TouchFeature> rims_of_shape(const Shape& shape) {
     add(-0.25 * cone->height, cone->radius);
   }
   return rims;
+}
+
+/// The flat face within a rim.
+TouchFeature disc_of(const TouchFeature& rim) {
+  return {Kind::plane, rim.at, std::copysign(1.0, rim.at.y()) * Vector3::UnitY(), 0.0};
 }
 
 /// The rim that a point of the surface (body frame) is on, where it is tilted from what it touches:
@@ -318,28 +315,28 @@ std::optional<TouchFeature> rim_feature(const Shape& shape, const Vector3& x,
 /// while that is across it.
 std::optional<TouchFeature> place_on_side(const Shape& shape, const Vector3& x,
                                           const Vector3& outward) {
-  const auto side = round_side(shape);
-  if (!side || std::abs(outward.y()) > across_an_edge) {
+  const auto radius = radius_of_side(shape);
+  if (!radius || std::abs(outward.y()) > across_an_edge) {
     return std::nullopt;
   }
-  const Vector3 from = x - side->radius * outward;
-  if (Vector3(from.x(), 0.0, from.z()).norm() > near_side * side->radius) {
+  const Vector3 from = x - *radius * outward;
+  if (Vector3(from.x(), 0.0, from.z()).norm() > near_side * *radius) {
     return std::nullopt;
   }
-  return TouchFeature{Kind::ball, from.y() * Vector3::UnitY(), Vector3::Zero(), side->radius};
+  return TouchFeature{Kind::ball, from.y() * Vector3::UnitY(), Vector3::Zero(), *radius};
 }
 
 /// The edge nearest to a point of the surface, of those that `across` (outward) is perpendicular
 /// to, or tilted from that by so much; of a capsule its axis.
 std::optional<TouchFeature> line_feature(const Shape& shape, const Vector3& x,
                                          const Vector3& across, double tilted = across_an_edge) {
-  if (const auto side = round_side(shape)) {
-    const Vector3 from = x - side->radius * across;
+  if (const auto radius = radius_of_side(shape)) {
+    const Vector3 from = x - *radius * across;
     const bool is_on = std::abs(across.y()) <= tilted &&
-                       Vector3(from.x(), 0.0, from.z()).norm() <= near_side * side->radius;
-    return is_on ? std::optional(
-                       TouchFeature{Kind::line, Vector3::Zero(), Vector3::UnitY(), side->radius})
-                 : std::nullopt;
+                       Vector3(from.x(), 0.0, from.z()).norm() <= near_side * *radius;
+    return is_on
+               ? std::optional(TouchFeature{Kind::line, Vector3::Zero(), Vector3::UnitY(), *radius})
+               : std::nullopt;
   }
   const auto c = polytope_corners(shape);
   if (!c || c->rounding > 0.0) {
@@ -527,7 +524,7 @@ double height_over(const TouchFeature& extreme, const Vector3& at, const Vector3
 std::vector<TouchFeature> faces_of(const Shape& shape) {
   std::vector<TouchFeature> faces;
   for (const TouchFeature& rim : rims_of_shape(shape)) {
-    faces.push_back({Kind::plane, rim.at, std::copysign(1.0, rim.at.y()) * Vector3::UnitY(), 0.0});
+    faces.push_back(disc_of(rim));
   }
   if (const auto* box = std::get_if<Box>(&shape)) {
     for (int k = 0; k < 3; ++k) {
@@ -572,10 +569,9 @@ TouchFeature face_feature(const Shape& shape, const Vector3& x, const Vector3& o
       }
     }
   }
-  for (const TouchFeature& flat : faces_of(shape)) {
-    if (flat.direction.y() * outward.y() > 0.0 && std::abs(flat.direction.y()) == 1.0 &&
-        !rims_of_shape(shape).empty()) {
-      return flat;
+  for (const TouchFeature& rim : rims_of_shape(shape)) {
+    if (rim.at.y() * outward.y() > 0.0) {
+      return disc_of(rim);
     }
   }
   if (const auto c = polytope_corners(shape)) {

@@ -115,12 +115,12 @@ TEST_CASE("rims: a disc rolls round on its rim, as steady as it should", "[turni
       const Quaternion q = Quaternion::FromTwoVectors(Vector3::UnitY(), axis);
       const Vector3 turns = round * Vector3::UnitY() + spin * axis;
       const std::string text =
-          head(2.0, "inf", half_space) +
+          head(0.8, "inf", half_space) +
           body("disc", fmt::format("shape = \"cylinder\"\nradius = {}\nlength = {}", r, length),
                "position = " + list(Vector3(0, -pz, 0)) + "\norientation = " + list(q) +
                    "\nangular_velocity = " + list(turns));
       const Simulation sim = run(text);
-      for (const double t : {0.11, 0.5, 1.3, 2.0}) {
+      for (const double t : {0.11, 0.4, 0.8}) {
         CAPTURE(t);
         const BodyState state = sim.trajectory.at(1, Instant{} + t);
         CHECK((state.pose.position - Vector3(0, -pz, 0)).norm() <= 1e-8);

@@ -145,7 +145,10 @@ bool EventModes::settle_once(std::span<const BodyIndex> seeds, Instant t, const 
 /// What carried it, and is driven, is slower all at once: it goes on by itself.
 bool EventModes::let_go(const Gathered& found, Instant t, const Adopt& adopt,
                         const SettleOptions& options) {
-  if (!found.pairs.empty() || !options.may_turn || options.pressed) {
+  const bool was_held = std::any_of(found.bodies.begin(), found.bodies.end(), [&](BodyIndex i) {
+    return i != *found.driven && graph_.joins(i, *found.driven);
+  });
+  if (!was_held || !found.pairs.empty() || !options.may_turn || options.unite || options.pressed) {
     return false;
   }
   FlatMode mode;

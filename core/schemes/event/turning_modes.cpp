@@ -228,7 +228,9 @@ std::string EventModes::add_touches(Gathered& found, Instant t, Turning& turning
   for (std::size_t k = 0; k < found.bodies.size(); ++k) {
     if (run_.model.mobility(found.bodies[k]) == Mobility::driven) {
       group.drivers.push_back({k, motions_.driven_from(found.bodies[k], t)});
-      group.start.loads[k] = accelerations_of(group.drivers.back().motion, t);
+      const Motion& motion = group.drivers.back().motion;
+      group.start.states[k] = {motion.pose(t - motion.start), motion.twist(t - motion.start)};
+      group.start.loads[k] = accelerations_of(motion, t);
     }
   }
   for (const BodyIndex i : found.bodies) {
