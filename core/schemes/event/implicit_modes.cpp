@@ -29,9 +29,6 @@ constexpr double least_part = 1e-9;
 /// Whether forces are not even looked for: there were none lately, or too many bodies turn, or what
 /// slides makes steps too short.
 bool EventModes::goes_on_implicitly(const Gathered& found, Instant t) const {
-  if (has_joints(found)) {
-    return false;
-  }
   const double frame = std::floor(t.seconds / run_.mean_frame);
   const auto free = std::count_if(found.bodies.begin(), found.bodies.end(),
                                   [&](BodyIndex i) { return run_.model.is_free(i); });

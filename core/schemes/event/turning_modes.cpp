@@ -187,13 +187,7 @@ void EventModes::find_forces(const Gathered& found, Turning& turning, Instant t)
     fastest = std::max(fastest, v.linear.norm() + v.angular.norm() * found.group.radius[k]);
   }
   const double roundoff = 64.0 * epsilon * fastest;
-  // On joints, short steps make no implicit ones: slip that the loads make within one is none.
-  const bool short_on_joints =
-      has_joints(found) && short_steps(found) / TurningLimits::few_short_steps % 2 != 0;
-  const double instant = short_on_joints
-                             ? std::max(found.group.instant, short_step * run_.mean_frame)
-                             : found.group.instant;
-  const double still = TurningForces(turning.group.start).load() * instant + roundoff;
+  const double still = TurningForces(turning.group.start).load() * found.group.instant + roundoff;
   const auto find = [&] {
     turning.mode = turning_mode(turning.group.start, std::max(still, turning_rest(turning.group)),
                                 halvings(found, t, &Turned::in_vain));
