@@ -23,6 +23,8 @@ constexpr double least_gap = 1.0 / 16.0;
 constexpr double rough = 1e8;
 /// Steps that are shorter than this part of a frame are short: see `TurningLimits`.
 constexpr double short_step = 1e-4;
+/// The same on joints, among which a step costs several times as much.
+constexpr double short_on_joints = 1e-3;
 /// Steps are not shortened below this part of a frame to end where bodies still touch.
 constexpr double least_in_touch = 1e-9;
 
@@ -495,10 +497,11 @@ void EventModes::carry_on(const Gathered& found, const Turning& turning, Instant
   if (turning.mode.implicit) {
     keep_forces(found, turning);
   }
+  const double least = (has_joints(found) ? short_on_joints : short_step) * run_.mean_frame;
   for (const auto& [a, b] : found.pairs) {
     if (Patch* const patch = graph_.find(a, b)) {
       const double tried = turning.step.stepped;
-      const bool is_short = tried < short_step * run_.mean_frame;
+      const bool is_short = tried < least;
       patch->short_steps = is_short ? patch->short_steps + 1 : 0;
       patch->step = turning.step.halved ? tried : std::max(patch->step, 2.0 * tried);
       count_implicit(turning, left, is_short, *patch);
