@@ -64,6 +64,10 @@ struct JointSystem::Workspace {
   Eigen::LLT<Eigen::MatrixXd> cholesky;
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> orthogonal;
   bool regular = true;
+  /// Of all changes at once, one by column.
+  using Columns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Columns leaves;
+  Columns all;
 
   [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(rows.size()); }
   /// Adds J^T x.
@@ -77,6 +81,27 @@ struct JointSystem::Workspace {
       x = orthogonal.solve(b);
     }
     x.array() *= scale.array();
+  }
+  /// The same of each column of `all`, in place; W is regular. Row by row, so that all columns go
+  /// on together.
+  void solve_all() {
+    const auto& L = cholesky.matrixLLT();
+    for (Eigen::Index i = 0; i < size(); ++i) {
+      all.row(i) *= scale[i];
+      for (Eigen::Index k = 0; k < i; ++k) {
+        all.row(i) -= L(i, k) * all.row(k);
+      }
+      all.row(i) /= L(i, i);
+    }
+    for (Eigen::Index i = size(); i-- > 0;) {
+      for (Eigen::Index k = i + 1; k < size(); ++k) {
+        all.row(i) -= L(k, i) * all.row(k);
+      }
+      all.row(i) /= L(i, i);
+    }
+    for (Eigen::Index i = 0; i < size(); ++i) {
+      all.row(i) *= scale[i];
+    }
   }
 };
 
@@ -392,6 +417,11 @@ JointSystem::Passing JointSystem::passing(Instant t, std::span<const BodyState> 
   factor(states, work);
   const auto n = static_cast<Eigen::Index>(6 * states.size());
   Passing passing{Eigen::MatrixXd(n, n), Eigen::VectorXd(driven_ ? n : 0)};
+  if (work.regular) {
+    pass_on_all(n, passing.driven, work);
+    passing.leaves = work.leaves;
+    return passing;
+  }
   Eigen::MatrixXd& leaves = passing.leaves;
   std::vector<Twist> changes;
   for (Eigen::Index c = 0; c < n; ++c) {
@@ -408,6 +438,45 @@ JointSystem::Passing JointSystem::passing(Instant t, std::span<const BodyState> 
     }
   }
   return passing;
+}
+
+/// Of a unit of each of n changes, in `work.leaves`, and the work of driven sides; W is regular.
+void JointSystem::pass_on_all(Eigen::Index n, Eigen::VectorXd& driven, Workspace& work) const {
+  work.leaves.setIdentity(n, n);
+  work.all.resize(work.size(), n);
+  driven.setZero();
+  const auto add = [&work](std::size_t place, Eigen::Index part, const Vector3& d, auto&& with) {
+    for (Eigen::Index axis = 0; axis < 3 && place != nowhere; ++axis) {
+      with(work.leaves.row(static_cast<Eigen::Index>(6 * place) + part + axis), d[axis]);
+    }
+  };
+  for (int round = 0; round < 2; ++round) {  // the second removes the roundoff of the first
+    work.all.setZero();
+    for (Eigen::Index i = 0; i < work.size(); ++i) {
+      const Row& row = work.rows[static_cast<std::size_t>(i)];
+      const auto ask = [&](auto&& leaves, double d) { work.all.row(i) -= d * leaves; };
+      add(row.a, 0, -row.row.direction, ask);
+      add(row.a, 3, -row.row.turn_a, ask);
+      add(row.b, 0, row.row.direction, ask);
+      add(row.b, 3, row.row.turn_b, ask);
+    }
+    work.solve_all();
+    for (Eigen::Index i = 0; i < work.size(); ++i) {
+      const Row& row = work.rows[static_cast<std::size_t>(i)];
+      const auto give = [&](auto&& leaves, double d) { leaves += d * work.all.row(i); };
+      const auto linear = [&](std::size_t place, double sign) {
+        return place == nowhere ? Vector3(Vector3::Zero())
+                                : Vector3(sign / inertia_[place].mass * row.row.direction);
+      };
+      add(row.a, 0, linear(row.a, -1.0), give);
+      add(row.a, 3, -row.spin_a, give);
+      add(row.b, 0, linear(row.b, 1.0), give);
+      add(row.b, 3, row.spin_b, give);
+      if (driven.size() > 0) {
+        driven -= row.driven_rate * work.all.row(i).transpose();
+      }
+    }
+  }
 }
 
 /// With the workspace's rows, which are factored.

@@ -84,6 +84,7 @@ class JointSystem {
   struct Workspace;
   static Workspace& workspace();
   double pass_on(std::span<Twist> changes, Workspace& work) const;
+  void pass_on_all(Eigen::Index n, Eigen::VectorXd& driven, Workspace& work) const;
   void evaluate(Instant t, std::span<const BodyState> states, Workspace& work) const;
   void factor(std::span<const BodyState> states, Workspace& work) const;
   [[nodiscard]] double tolerance(std::span<const BodyState> states) const;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 namespace kairos {
@@ -91,8 +92,9 @@ class Trial {
 
 }  // namespace
 
-ContactSweeps::ContactSweeps(std::span<const GroupBody> bodies,
-                             std::span<const SweptTouch> touches) {
+ContactSweeps::ContactSweeps(std::span<const GroupBody> bodies, std::span<const SweptTouch> touches,
+                             std::shared_ptr<const GroupJoints> joints)
+    : joints_(std::move(joints)) {
   std::vector<Matrix3> turns;  // roots of inverse inertias
   for (const GroupBody& body : bodies) {
     turns.push_back(body.inverse_inertia.isZero(0.0)
@@ -105,7 +107,11 @@ ContactSweeps::ContactSweeps(std::span<const GroupBody> bodies,
     out.b = touch.b;
     out.friction = touch.friction;
     const Vector3& n = touch.normal;
-    const Vector3 t = n.unitOrthogonal();
+    Vector3 t = n.unitOrthogonal();
+    if (joints_ != nullptr) {
+      const ContactSystem system{{bodies.begin(), bodies.end()}, {}, joints_};
+      t = contact_tangents(system, touch.a, touch.b, touch.point_b, n, t).first;
+    }
     out.axes << n.transpose(), t.transpose(), n.cross(t).transpose();
     const auto side = [&](std::size_t i, const Vector3& point, double sign, Matrix36& of,
                           Matrix63& to, Matrix36& root) {
@@ -120,8 +126,45 @@ ContactSweeps::ContactSweeps(std::span<const GroupBody> bodies,
     side(touch.a, touch.point_a, -1.0, out.of_a, out.to_a, out.root_a);
     side(touch.b, touch.point_b, 1.0, out.of_b, out.to_b, out.root_b);
     out.W = out.of_a * out.to_a + out.of_b * out.to_b;
+    if (joints_ != nullptr) {
+      pass_on(bodies, touch, out);
+    }
     blocks_.push_back(out);
   }
+}
+
+/// What joints make of a touch.
+void ContactSweeps::pass_on(std::span<const GroupBody> bodies, const SweptTouch& touch,
+                            Block& block) const {
+  block.to_all.setZero(static_cast<Eigen::Index>(6 * bodies.size()), 3);
+  for (int r = 0; r < 3; ++r) {
+    Eigen::VectorXd asks = Eigen::VectorXd::Zero(block.to_all.rows());
+    Eigen::VectorXd gives = asks;
+    for (const auto& [place, of, to] :
+         {std::tuple{touch.a, &block.of_a, &block.to_a}, {touch.b, &block.of_b, &block.to_b}}) {
+      const auto at = static_cast<Eigen::Index>(6 * place);
+      asks.segment<6>(at) = of->row(r).transpose();
+      gives.segment<6>(at) = to->col(r);
+    }
+    joints_->pass_on(asks, gives);
+    block.to_all.col(r) = gives;
+    block.blocked[static_cast<std::size_t>(r)] = gives.isZero(0.0);
+  }
+  const Matrix3 W = between(block, block);
+  block.W = 0.5 * (W + W.transpose());
+}
+
+/// What a unit of impulses at one touch does to the rates of another among joints. What these block
+/// neither gives nor is given anything.
+Matrix3 ContactSweeps::between(const Block& asks, const Block& gives) {
+  Matrix3 W = asks.of_a * gives.to_all.middleRows<6>(static_cast<Eigen::Index>(6 * asks.a)) +
+              asks.of_b * gives.to_all.middleRows<6>(static_cast<Eigen::Index>(6 * asks.b));
+  for (int r = 0; r < 3; ++r) {
+    if (asks.blocked[static_cast<std::size_t>(r)]) {
+      W.row(r).setZero();
+    }
+  }
+  return W;
 }
 
 /// Each touch in turn is given this share of what it lacks; returns the most that changed, m/s.
@@ -131,6 +174,9 @@ double ContactSweeps::sweep_once(std::span<const Vector3> rates, bool rubs, doub
   double changed = 0.0;
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     const Block& block = blocks_[k];
+    if (!block.presses()) {
+      continue;
+    }
     const Vector3 u = rate_of(k, velocities, rates);
     const Vector3 alone =
         coulomb_impulse(block.W, u - block.W * along[k], rubs ? block.friction : 0.0);
@@ -152,7 +198,7 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
   Swept swept{std::vector<Vector3>(blocks_.size(), Vector3::Zero()), velocities};
   std::vector<Vector3> along(blocks_.size(), Vector3::Zero());
   for (std::size_t k = 0; k < blocks_.size() && !begin.empty(); ++k) {
-    along[k] = blocks_[k].axes * begin[k];
+    along[k] = blocks_[k].presses() ? Vector3(blocks_[k].axes * begin[k]) : Vector3::Zero();
   }
   push_all(along, swept.velocities);
   double least = nearly_settled * settled;
@@ -244,8 +290,30 @@ void ContactSweeps::push(std::size_t touch, const Vector3& impulse,
   push_along(blocks_[touch], blocks_[touch].axes * impulse, velocities);
 }
 
+double ContactSweeps::driven_work(std::span<const Vector3> impulses) const {
+  double work = 0.0;
+  for (std::size_t k = 0; k < blocks_.size() && joints_ != nullptr && joints_->driven(); ++k) {
+    const Block& block = blocks_[k];
+    const Vector3 along = block.axes * impulses[k];
+    if (along.isZero(0.0)) {
+      continue;
+    }
+    Eigen::VectorXd changes = Eigen::VectorXd::Zero(block.to_all.rows());
+    changes.segment<6>(static_cast<Eigen::Index>(6 * block.a)) += block.to_a * along;
+    changes.segment<6>(static_cast<Eigen::Index>(6 * block.b)) += block.to_b * along;
+    work += joints_->driven_work(changes).sum();
+  }
+  return work;
+}
+
 void ContactSweeps::push_along(const Block& block, const Vector3& impulse,
                                std::vector<Vector6>& v) {
+  if (block.to_all.size() > 0) {
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      v[i] += block.to_all.middleRows<6>(static_cast<Eigen::Index>(6 * i)) * impulse;
+    }
+    return;
+  }
   v[block.a] += block.to_a * impulse;
   v[block.b] += block.to_b * impulse;
 }

@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 
+#include <array>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -26,12 +28,15 @@ struct SweptTouch {
 /// which nothing approaches and what is pressed does not part: touch by touch, all others as they
 /// are, again and again [Moreau1988, Jourdan1998]; where that hardly moves, at all touches at once
 /// (`cone_at_once`). In a step over many touches it tries what follows if each goes on parting,
-/// sliding or sticking as sweeps have found: one linear system.
+/// sliding or sticking as sweeps have found: one linear system. Joints pass on what touches do; a
+/// touch whose normal they block is left alone.
 class ContactSweeps {
  public:
   using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-  ContactSweeps(std::span<const GroupBody> bodies, std::span<const SweptTouch> touches);
+  /// `joints`: of the bodies; null: none.
+  ContactSweeps(std::span<const GroupBody> bodies, std::span<const SweptTouch> touches,
+                std::shared_ptr<const GroupJoints> joints = nullptr);
 
   struct Swept {
     std::vector<Vector3> impulse;     ///< by touch, on b, N s
@@ -59,6 +64,8 @@ class ContactSweeps {
   [[nodiscard]] Vector3 rate(std::size_t touch, const std::vector<Vector6>& velocities) const;
   /// Adds what an impulse (or a force) at a touch does to velocities (or accelerations).
   void push(std::size_t touch, const Vector3& impulse, std::vector<Vector6>& velocities) const;
+  /// What driven sides of joints do while these pass on such impulses, by touch, J.
+  [[nodiscard]] double driven_work(std::span<const Vector3> impulses) const;
 
  private:
   using Matrix36 = Eigen::Matrix<double, 3, 6>;
@@ -72,7 +79,13 @@ class ContactSweeps {
     Matrix36 root_a, root_b;  ///< J M^(-1/2)
     Matrix3 W;
     double friction = 0.0;
+    /// M^-1 J^T of all bodies, as joints pass it on; empty: there are none.
+    Eigen::Matrix<double, Eigen::Dynamic, 3> to_all{};
+    std::array<bool, 3> blocked{};  ///< joints do, along these axes
+
+    [[nodiscard]] bool presses() const { return !blocked[0]; }
   };
+  void pass_on(std::span<const GroupBody> bodies, const SweptTouch& touch, Block& block) const;
   double sweep_once(std::span<const Vector3> rates, bool rubs, double share,
                     std::vector<Vector3>& along, std::vector<Vector6>& velocities) const;
   double settle_at_once(const std::vector<Vector6>& free, std::span<const Vector3> rates,
@@ -81,6 +94,7 @@ class ContactSweeps {
   double solve_as_found(const std::vector<Vector6>& free, std::span<const Vector3> rates, bool rubs,
                         bool anew, std::vector<Vector3>& along,
                         std::vector<Vector6>& velocities) const;
+  [[nodiscard]] static Matrix3 between(const Block& asks, const Block& gives);
   /// What a unit of impulses at one touch does to the rates of another, along their axes.
   [[nodiscard]] Matrix3 coupling(std::size_t asks, std::size_t gives) const;
   [[nodiscard]] Vector3 rate_of(std::size_t touch, const std::vector<Vector6>& velocities,
@@ -89,6 +103,7 @@ class ContactSweeps {
   static void push_along(const Block& block, const Vector3& impulse, std::vector<Vector6>& v);
 
   std::vector<Block> blocks_;
+  std::shared_ptr<const GroupJoints> joints_;
 };
 
 }  // namespace core

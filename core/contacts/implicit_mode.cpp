@@ -135,10 +135,6 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
                           bool last_resort, int halvings) {
   TurningMode mode;
   mode.implicit = true;
-  if (state.joints != nullptr) {
-    mode.refusal = "what hangs on joints is not stepped over";
-    return mode;
-  }
   const TurningForces forces(state);
   std::vector<SweptTouch> touches;
   std::vector<Vector3> begin;
@@ -149,7 +145,7 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
                        touch.rough ? std::numeric_limits<double>::infinity() : touch.friction});
     begin.push_back(k < warm.size() ? Vector3(h * warm[k]) : Vector3(Vector3::Zero()));
   }
-  ContactSweeps sweeps(state.bodies, touches);
+  ContactSweeps sweeps(state.bodies, touches, state.joints);
   std::vector<Vector6> velocities;
   double fastest = 0.0;
   for (std::size_t i = 0; i < state.bodies.size(); ++i) {
@@ -164,7 +160,8 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
   for (const Vector3& impulse : stopped.impulse) {
     mode.struck.push_back(impulse.isZero(0.0) ? 0 : 1);
   }
-  mode.driven = carrying_work(state, touches, stopped.impulse);
+  mode.driven =
+      carrying_work(state, touches, stopped.impulse) + sweeps.driven_work(stopped.impulse);
   for (const Vector6& v : velocities) {
     mode.velocities.push_back({v.head<3>(), v.tail<3>()});
   }

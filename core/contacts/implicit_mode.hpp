@@ -17,7 +17,7 @@ inline namespace core {
 ///                     does not press it, too, unless it parts
 /// @param halvings  the most sweeps are halved so many times
 ///
-/// A refusal where sweeps do not settle, or where bodies hang on joints.
+/// Joints pass on what touches do; loads are with them. A refusal where sweeps do not settle.
 [[nodiscard]] TurningMode implicit_mode(const TurningState& state, double h,
                                         std::span<const Vector3> warm, bool last_resort = false,
                                         int halvings = 0);

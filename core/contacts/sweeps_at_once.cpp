@@ -68,6 +68,9 @@ bool solve_damped(const Sparse& K, double added, const VectorXd& b, VectorXd& x,
 Matrix3 ContactSweeps::coupling(std::size_t asks, std::size_t gives) const {
   const Block& of = blocks_[asks];
   const Block& to = blocks_[gives];
+  if (joints_ != nullptr) {
+    return between(of, to);
+  }
   Matrix3 W = Matrix3::Zero();
   if (of.a == to.a) W += of.of_a * to.to_a;
   if (of.a == to.b) W += of.of_a * to.to_b;
@@ -82,24 +85,36 @@ double ContactSweeps::settle_at_once(const std::vector<Vector6>& free,
                                      std::span<const Vector3> rates, double settled, bool rubs,
                                      AtOnce way, std::vector<Vector3>& along,
                                      std::vector<Vector6>& velocities) const {
-  const std::size_t n = blocks_.size();
+  std::vector<std::size_t> touches;
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    if (blocks_[k].presses()) {
+      touches.push_back(k);
+    }
+  }
+  const std::size_t n = touches.size();
   const auto size = static_cast<Index>(3 * n);
   ConeProblem problem{Eigen::MatrixXd(size, size), VectorXd(size), {}};
   VectorXd begin(size);
   for (std::size_t k = 0; k < n; ++k) {
     const auto at = static_cast<Index>(3 * k);
-    problem.q.segment<3>(at) = rate_of(k, free, rates);
-    problem.friction.push_back(rubs ? blocks_[k].friction : 0.0);
-    begin.segment<3>(at) = along[k];
-    problem.roots.push_back({blocks_[k].a, blocks_[k].b, blocks_[k].root_a, blocks_[k].root_b});
-    for (std::size_t l = 0; l < n; ++l) {
-      problem.W.block<3, 3>(at, static_cast<Index>(3 * l)) = coupling(k, l);
+    const Block& block = blocks_[touches[k]];
+    problem.q.segment<3>(at) = rate_of(touches[k], free, rates);
+    problem.friction.push_back(rubs ? block.friction : 0.0);
+    begin.segment<3>(at) = along[touches[k]];
+    if (joints_ == nullptr) {
+      problem.roots.push_back({block.a, block.b, block.root_a, block.root_b});
     }
+    for (std::size_t l = 0; l < n; ++l) {
+      problem.W.block<3, 3>(at, static_cast<Index>(3 * l)) = coupling(touches[k], touches[l]);
+    }
+  }
+  if (joints_ != nullptr) {
+    problem.W = (0.5 * (problem.W + problem.W.transpose())).eval();
   }
   const ConeImpulses found = cone_at_once(problem, begin, settled, way);
   velocities = free;
   for (std::size_t k = 0; k < n; ++k) {
-    along[k] = found.impulse.segment<3>(static_cast<Index>(3 * k));
+    along[touches[k]] = found.impulse.segment<3>(static_cast<Index>(3 * k));
   }
   push_all(along, velocities);
   return found.off;

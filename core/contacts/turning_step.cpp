@@ -43,6 +43,36 @@ constexpr double still_slides = 1e-3;
 /// What is this part of its size beyond a rim is beyond it.
 constexpr double over_rim = 1e-12;
 
+/// The group at another instant as its touches see it: without loads and joints.
+TurningState touching_state(const TurningGroup& group, Instant t,
+                            std::span<const BodyState> free_states) {
+  TurningState state;
+  state.radius = group.start.radius;
+  state.touches = group.start.touches;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < group.bodies.size(); ++i) {
+    const bool free = group.inertia[i].mass > 0.0;
+    const auto driver = std::find_if(group.drivers.begin(), group.drivers.end(),
+                                     [i](const GroupDriver& d) { return d.place == i; });
+    const double moved = driver != group.drivers.end() ? t - driver->motion.start : 0.0;
+    state.states.push_back(free ? free_states[next++]
+                           : driver != group.drivers.end()
+                               ? BodyState{driver->motion.pose(moved), driver->motion.twist(moved)}
+                               : group.start.states[i]);
+    state.bodies.push_back(group_body(group.inertia[i], state.states.back().pose));
+  }
+  return state;
+}
+
+/// Its touches there.
+std::vector<TouchNow> touches_of(const TurningState& state) {
+  std::vector<TouchNow> now;
+  for (const Touch& touch : state.touches) {
+    now.push_back(look_at(touch, state.states[touch.a], state.states[touch.b]));
+  }
+  return now;
+}
+
 /// Of each body of a group among all of them.
 std::vector<std::size_t> own_places(std::size_t n) {
   std::vector<std::size_t> places(n);
@@ -105,26 +135,35 @@ class ContactForce final : public Force {
 
   void add(Instant t, std::span<const BodyState> bodies,
            std::span<Wrench> wrenches) const override {
+    if (mode_.implicit) {
+      const TurningState state = touching_state(group_, t, bodies);
+      const std::vector<TouchNow> now = touches_of(state);
+      add_all(state, now, carried_forces(group_, mode_, now), wrenches);
+      return;
+    }
     const TurningState state = turning_state(group_, t, bodies);
     TurningForces forces(state);
-    const auto force = mode_.implicit
-                           ? carried_forces(group_, mode_, forces.now())
-                           : forces
-                                 .solve(directed(mode_, forces.now(), slow_),
-                                        forces.of_several(TurningForces::Which::some_of_many))
-                                 .force;
-    std::size_t next = 0;
-    for (std::size_t i = 0; i < group_.bodies.size(); ++i) {
-      if (group_.inertia[i].mass > 0.0) {
-        add_to(i, state, forces.now(), force, wrenches[next++]);
-      }
-    }
+    add_all(state, forces.now(),
+            forces
+                .solve(directed(mode_, forces.now(), slow_),
+                       forces.of_several(TurningForces::Which::some_of_many))
+                .force,
+            wrenches);
   }
   [[nodiscard]] double potential(Instant, std::span<const BodyState>) const override { return 0.0; }
   [[nodiscard]] bool conservative() const override { return false; }
   [[nodiscard]] std::string description() const override { return "what holds bodies in touch"; }
 
  private:
+  void add_all(const TurningState& state, const std::vector<TouchNow>& touches,
+               const std::vector<Vector3>& force, std::span<Wrench> wrenches) const {
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < group_.bodies.size(); ++i) {
+      if (group_.inertia[i].mass > 0.0) {
+        add_to(i, state, touches, force, wrenches[next++]);
+      }
+    }
+  }
   static void add_to(std::size_t i, const TurningState& state, const std::vector<TouchNow>& touches,
                      const std::vector<Vector3>& force, Wrench& wrench) {
     for (std::size_t k = 0; k < state.touches.size(); ++k) {
@@ -241,6 +280,9 @@ class Step {
   [[nodiscard]] TurningState at(double s) const {
     return turning_state(group_, t_ + s, free_states(s));
   }
+  [[nodiscard]] TurningState touching_at(double s) const {
+    return touching_state(group_, t_ + s, free_states(s));
+  }
 
   bool integrate(double longest) {
     Island island;
@@ -294,7 +336,7 @@ class Step {
 
   [[nodiscard]] bool keeps_gaps() const {
     for (int j = 1; j <= samples; ++j) {
-      const TurningState state = at(step_.duration * j / samples);
+      const TurningState state = touching_at(step_.duration * j / samples);
       for (std::size_t k = 0; k < state.touches.size(); ++k) {
         const Touch& touch = state.touches[k];
         const double gap = look_at(touch, state.states[touch.a], state.states[touch.b]).gap;
@@ -346,10 +388,10 @@ class Step {
 
   /// What the mode is at its end for at s; `step`: it is not.
   [[nodiscard]] TurningEnd ends_at(double s) {
-    const TurningState state = at(s);
     if (mode_.implicit) {
-      return rim(state) ? TurningEnd::rim : TurningEnd::step;
+      return rim(touching_at(s)) ? TurningEnd::rim : TurningEnd::step;
     }
+    const TurningState state = at(s);
     TurningForces forces(state);
     for (std::size_t k = 0; k < state.touches.size(); ++k) {
       if (stops(mode_.choices[k], forces.now()[k])) {
@@ -452,7 +494,7 @@ class Step {
   std::vector<Motion> bend() {
     const double h = step_.duration;
     std::vector<Motion> bent = raw_;
-    TurningState end = at(h);
+    TurningState end = touching_at(h);
     std::vector<char> held;
     for (const FrictionChoice& c : mode_.choices) {
       held.push_back(c.does != Does::opens ? 1 : 0);
@@ -463,9 +505,9 @@ class Step {
       put_onto_joints(end, held);
     }
     step_.states = end.states;
-    const TurningForces there(end);
-    step_.choices = at_end(there.now());
-    const std::vector<Twist> velocities = held_velocities(end, there.now(), step_.choices).of;
+    const std::vector<TouchNow> there = touches_of(end);
+    step_.choices = at_end(there);
+    const std::vector<Twist> velocities = held_velocities(end, there, step_.choices).of;
     for (std::size_t k = 0; k < free_.size(); ++k) {
       const std::size_t i = free_[k];
       BodyState& state = step_.states[i];
@@ -575,22 +617,19 @@ class Step {
   template <typename Bodies, typename Pairs>
   void power_at(double s, Bodies of_body, Pairs of_pair, Pairs of_belt, Pairs of_surface,
                 Bodies leaks, Bodies of_driver) {
-    const TurningState state = at(s);
-    TurningForces forces(state);
-    const auto choices = directed(mode_, forces.now(), slow_);
+    const TurningState state = mode_.implicit ? touching_at(s) : at(s);
+    const std::vector<TouchNow> touches = touches_of(state);
+    const auto choices = directed(mode_, touches, slow_);
     // Of forces that are redundant those inside their cones rub.
-    TurningForces::Solution found;
-    if (mode_.implicit) {
-      found.force = carried_forces(group_, mode_, forces.now());
-    } else {
-      found = forces.verified(choices, {.carry = &carry_});
-    }
+    const std::vector<Vector3> force =
+        mode_.implicit ? carried_forces(group_, mode_, touches)
+                       : TurningForces(state).verified(choices, {.carry = &carry_}).force;
     for (std::size_t k = 0; k < state.touches.size(); ++k) {
       const Touch& touch = state.touches[k];
-      const TouchNow& now = forces.now()[k];
+      const TouchNow& now = touches[k];
       const auto power = [&](std::size_t i, const Vector3& point) {
         const BodyState& at = state.states[i];
-        return found.force[k].dot(at.twist.at(point, at.pose.position));
+        return force[k].dot(at.twist.at(point, at.pose.position));
       };
       const double on_a = -power(touch.a, now.point_a);
       const double on_b = power(touch.b, now.point_b);
@@ -604,7 +643,7 @@ class Step {
       double rubbed = 0.0;
       double carried = 0.0;
       if (!touch.belt.isZero(0.0)) {
-        const Vector3 along = found.force[k] - now.normal * now.normal.dot(found.force[k]);
+        const Vector3 along = force[k] - now.normal * now.normal.dot(force[k]);
         carried = -along.dot(touch.belt);
         of_belt[static_cast<Eigen::Index>(touch.pair)] += carried;
       }
@@ -612,40 +651,48 @@ class Step {
       // What sticks at the end of an implicit step may have slid in it.
       const bool may_slide = mode_.implicit && choices[k].does != Does::opens;
       if (may_slide || (slides && !choices[k].direction.isZero(0.0))) {
-        const Vector3 along = found.force[k] - now.normal * now.normal.dot(found.force[k]);
+        const Vector3 along = force[k] - now.normal * now.normal.dot(force[k]);
         rubbed = std::min(along.dot(now.velocity), 0.0);
       }
       of_pair[static_cast<Eigen::Index>(touch.pair)] += rubbed;
       const std::size_t first = group_.inertia[touch.a].mass > 0.0 ? touch.a : touch.b;
       leaks[static_cast<Eigen::Index>(first)] += on_a + on_b - (rubbed + carried);
     }
-    if (state.joints != nullptr && state.joints->driven()) {
-      const Eigen::VectorXd power = driven_power(state, forces, found);
+    const auto joints = mode_.implicit && drives_joints()
+                            ? group_joints(group_.mechanisms, t_ + s, state.states)
+                            : state.joints;
+    if (joints != nullptr && joints->driven()) {
+      const Eigen::VectorXd power = joints->driven_work(given(state, touches, force));
       for (Eigen::Index m = 0; m < power.size(); ++m) {
-        of_driver[static_cast<Eigen::Index>(state.joints->first_of(static_cast<std::size_t>(m)))] +=
+        of_driver[static_cast<Eigen::Index>(joints->first_of(static_cast<std::size_t>(m)))] +=
             power[m];
       }
     }
   }
 
-  /// Of what joints hang on, because contact forces act: W, by mechanism.
-  static Eigen::VectorXd driven_power(const TurningState& state, const TurningForces& forces,
-                                      const TurningForces::Solution& found) {
-    Eigen::VectorXd given =
-        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(6 * state.bodies.size()));
+  [[nodiscard]] bool drives_joints() const {
+    return std::any_of(
+        group_.mechanisms.begin(), group_.mechanisms.end(),
+        [](const GroupMechanism& m) { return m.joints != nullptr && m.joints->driven(); });
+  }
+
+  /// What contact forces give to the bodies, six numbers for each, as if there were no joints.
+  static Eigen::VectorXd given(const TurningState& state, const std::vector<TouchNow>& touches,
+                               const std::vector<Vector3>& force) {
+    Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(6 * state.bodies.size()));
     for (std::size_t k = 0; k < state.touches.size(); ++k) {
       const Touch& touch = state.touches[k];
-      const TouchNow& now = forces.now()[k];
+      const TouchNow& now = touches[k];
       for (const auto& [i, point, sign] :
            {std::tuple{touch.a, now.point_a, -1.0}, {touch.b, now.point_b, 1.0}}) {
         const GroupBody& body = state.bodies[i];
-        const Vector3 force = sign * found.force[k];
+        const Vector3 on = sign * force[k];
         const auto at = static_cast<Eigen::Index>(6 * i);
-        given.segment<3>(at) += body.inverse_mass * force;
-        given.segment<3>(at + 3) += body.inverse_inertia * (point - body.position).cross(force);
+        out.segment<3>(at) += body.inverse_mass * on;
+        out.segment<3>(at + 3) += body.inverse_inertia * (point - body.position).cross(on);
       }
     }
-    return state.joints->driven_work(given);
+    return out;
   }
 
   const TurningGroup& group_;
@@ -673,25 +720,12 @@ Twist accelerations_of(const Motion& motion, Instant t) {
 
 TurningState turning_state(const TurningGroup& group, Instant t,
                            std::span<const BodyState> free_states) {
-  TurningState state;
-  state.radius = group.start.radius;
-  state.touches = group.start.touches;
-  std::size_t next = 0;
+  TurningState state = touching_state(group, t, free_states);
   std::vector<Wrench> applied;
   for (std::size_t i = 0; i < group.bodies.size(); ++i) {
-    const BodyInertia& inertia = group.inertia[i];
-    const bool free = inertia.mass > 0.0;
-    const auto driver = std::find_if(group.drivers.begin(), group.drivers.end(),
-                                     [i](const GroupDriver& d) { return d.place == i; });
-    const double moved = driver != group.drivers.end() ? t - driver->motion.start : 0.0;
-    state.states.push_back(free ? free_states[next++]
-                           : driver != group.drivers.end()
-                               ? BodyState{driver->motion.pose(moved), driver->motion.twist(moved)}
-                               : group.start.states[i]);
-    const BodyState& s = state.states.back();
-    state.bodies.push_back(group_body(inertia, s.pose));
+    const BodyState& s = state.states[i];
     applied.push_back({group.constant_force[i], Vector3::Zero()});
-    if (free) {
+    if (group.inertia[i].mass > 0.0) {
       for (const Force* const force : group.forces[i]) {
         force->add(t, {&s, 1}, {&applied.back(), 1});
       }

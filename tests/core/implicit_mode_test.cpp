@@ -2,6 +2,7 @@
 
 #include "core/contacts/implicit_mode.hpp"
 
+#include "core/contacts/turning_step.hpp"
 #include "core/random.hpp"
 #include "tests/catch.hpp"
 
@@ -272,4 +273,103 @@ TEST_CASE("implicit step: what opens has no force, rough as it may be", "[implic
     }
   }
   CHECK(open > 100);
+}
+
+namespace {
+
+/// A plank of 1 m along x, 2 kg, that hangs on the world at its end at the origin, and touches the
+/// floor with a corner at the other, level with the joint. It turns about the upright at `spin`.
+struct Plank {
+  static constexpr double mass = 2.0;
+  static constexpr double mu = 0.4;
+  static constexpr double about_end = 0.3 + 0.25 * mass;  ///< kg m^2, upright
+
+  Plank(JointKind kind, const Vector3& axis, double spin)
+      : joints({placed(kind, axis)}, {inertia()}) {
+    group.bodies = {0, 1};
+    group.inertia = {BodyInertia{}, inertia()};
+    group.constant_force = {Vector3::Zero(), Vector3(0.0, -mass * g, 0.0)};
+    group.forces.resize(2);
+    group.mechanisms.push_back({{1}, &joints, {}});
+    group.start.radius = {0.0, 0.5};
+    BodyState plank;
+    plank.pose.position = {0.5, 0.0, 0.0};
+    plank.twist = {Vector3(0.0, 0.0, -0.5 * spin), Vector3(0.0, spin, 0.0)};
+    group.start.states = {BodyState{}, plank};
+    Touch touch;
+    touch.b = 1;
+    touch.on_a = {TouchFeature::Kind::plane, Vector3::Zero(), Vector3::UnitY(), 0.0};
+    touch.on_b = {TouchFeature::Kind::ball, Vector3(0.5, 0.0, 0.0), Vector3::Zero(), 0.0};
+    touch.normal = Vector3::UnitY();
+    touch.friction = mu;
+    group.start.touches.push_back(touch);
+  }
+
+  [[nodiscard]] TurningState state() const {
+    return turning_state(group, Instant{}, std::span(group.start.states).last(1));
+  }
+  static BodyInertia inertia() {
+    return {.mass = mass, .principal = Vector3(0.1, 0.3, 0.3), .rotates = true};
+  }
+  static JointSystem::Placed placed(JointKind kind, const Vector3& axis) {
+    JointSystem::Placed out;
+    out.joint.kind = kind;
+    out.joint.b.point = {-0.5, 0.0, 0.0};
+    out.joint.a.frame = out.joint.b.frame = Quaternion::FromTwoVectors(Vector3::UnitX(), axis);
+    out.joint.b.body = 0;
+    out.b.place = 0;
+    return out;
+  }
+
+  JointSystem joints;
+  TurningGroup group;
+};
+
+}  // namespace
+
+// The joint carries half of the plank, the floor the other half.
+TEST_CASE("implicit step: a plank on a ball joint is slowed at its end, and stops",
+          "[implicit][joints]") {
+  constexpr double h = 1e-4;
+  constexpr double slowed = Plank::mu * 0.5 * Plank::mass * g / Plank::about_end;  // rad/s^2
+  const double spin = GENERATE(2.0, -0.5, 0.5 * slowed * h);
+  CAPTURE(spin);
+  // Friction is against the slip at the end, which is not quite along z: it is on a circle.
+  const double bound = 1e-8 + spin * spin * h * h;
+  const Plank plank(JointKind::ball, Vector3::UnitX(), spin);
+  const TurningState state = plank.state();
+  const TurningMode mode = implicit_mode(state, h, {});
+  REQUIRE(mode.refusal.empty());
+  const double left = std::abs(spin) - std::min(std::abs(spin), slowed * h);
+  const Twist end = after(mode, 1, h);
+  CHECK(std::abs(end.angular.y() - std::copysign(left, spin)) <= bound * slowed * h);
+  CHECK(mode.choices[0].does == (left > 0.0 ? Does::slides : Does::sticks));
+  const Vector3& f = mode.forces.force[0];
+  CHECK(f.y() == Approx(0.5 * Plank::mass * g).epsilon(1e-8));
+  // It turns z down where it turns about y.
+  CHECK(f.z() == Approx((spin - std::copysign(left, spin)) * Plank::about_end / h).epsilon(bound));
+  CHECK(std::abs(end.linear.y() + 0.5 * end.angular.z()) <= 1e-8 * g * h);  // at rest
+}
+
+// The joint holds the end along the floor, so that what presses it rubs nowhere.
+TEST_CASE("implicit step: the end of a plank on a hinge is pressed straight down",
+          "[implicit][joints]") {
+  constexpr double h = 1e-3;
+  const Plank plank(JointKind::hinge, Vector3::UnitZ(), 0.0);
+  const TurningMode mode = implicit_mode(plank.state(), h, {});
+  REQUIRE(mode.refusal.empty());
+  CHECK((mode.forces.force[0] - Vector3(0.0, 0.5 * Plank::mass * g, 0.0)).norm() <= 1e-8 * g);
+  CHECK(after(mode, 1, h).linear.norm() <= 1e-8 * g * h);
+  CHECK(after(mode, 1, h).angular.norm() <= 1e-8 * g * h);
+}
+
+// Nothing is known of what would press where the joint carries all: there is no force.
+TEST_CASE("implicit step: what joints do not let move along a normal is left alone",
+          "[implicit][joints]") {
+  constexpr double h = 1e-3;
+  const Plank plank(JointKind::hinge, Vector3::UnitY(), 2.0);
+  const TurningMode mode = implicit_mode(plank.state(), h, std::vector{Vector3(0.0, 3.0, 1.0)});
+  REQUIRE(mode.refusal.empty());
+  CHECK(mode.forces.force[0].isZero(0.0));
+  CHECK(after(mode, 1, h).angular.y() == Approx(2.0).epsilon(1e-12));
 }

@@ -13,6 +13,8 @@ namespace {
 
 /// A body that turns has so many steps in a frame at most in which forces are those of an instant.
 constexpr int most_exact_steps = 150;
+/// The same of what hangs on joints, which a step costs several times as much.
+constexpr int most_exact_on_joints = 100;
 /// An implicit step takes this part of a frame at most, and so many follow each other before forces
 /// at an instant are looked for again: twice as many each time that there are none.
 constexpr double implicit_part = 1.0 / 16.0;
@@ -32,16 +34,14 @@ constexpr double least_part = 1e-9;
 /// Whether forces are not even looked for: there were none lately, or too many bodies turn, or what
 /// slides makes steps too short.
 bool EventModes::goes_on_implicitly(const Gathered& found, Instant t) const {
-  if (has_joints(found)) {
-    return false;
-  }
   const double frame = std::floor(t.seconds / run_.mean_frame);
+  const int most_exact = has_joints(found) ? most_exact_on_joints : most_exact_steps;
   const auto free = std::count_if(found.bodies.begin(), found.bodies.end(),
                                   [&](BodyIndex i) { return run_.model.is_free(i); });
   return free > TurningLimits::most_bodies ||
          short_steps(found) >= TurningLimits::few_short_steps || implicit_steps(found).first > 0 ||
          std::any_of(found.bodies.begin(), found.bodies.end(), [&](BodyIndex i) {
-           return has_turned_[i].frame == frame && has_turned_[i].steps >= most_exact_steps;
+           return has_turned_[i].frame == frame && has_turned_[i].steps >= most_exact;
          });
 }
 
@@ -74,7 +74,8 @@ bool EventModes::step_over(const Gathered& found, Turning& turning, Instant t,
   const double frame = run_.options.step > 0.0 ? run_.options.step : run_.mean_frame;
   const double before = implicit_steps(found).second > 0 ? next_step(found) : frame;
   const bool few = turning.group.start.touches.size() <= few_touches;
-  double h = std::min({(few ? part_of_few : implicit_part) * frame, given_until(turning, t), before});
+  double h =
+      std::min({(few ? part_of_few : implicit_part) * frame, given_until(turning, t), before});
   bool halved = false;
   int refused = 0;
   for (int round = 0; round < most_halvings; ++round, h *= 0.5, halved = true) {

@@ -23,6 +23,8 @@ constexpr double least_gap = 1.0 / 16.0;
 constexpr double rough = 1e8;
 /// Steps that are shorter than this part of a frame are short: see `TurningLimits`.
 constexpr double short_step = 1e-4;
+/// The same on joints, among which a step costs several times as much.
+constexpr double short_on_joints = 1e-3;
 /// Steps are not shortened below this part of a frame to end where bodies still touch.
 constexpr double least_in_touch = 1e-9;
 
@@ -187,13 +189,7 @@ void EventModes::find_forces(const Gathered& found, Turning& turning, Instant t)
     fastest = std::max(fastest, v.linear.norm() + v.angular.norm() * found.group.radius[k]);
   }
   const double roundoff = 64.0 * epsilon * fastest;
-  // On joints, short steps make no implicit ones: slip that the loads make within one is none.
-  const bool short_on_joints =
-      has_joints(found) && short_steps(found) / TurningLimits::few_short_steps % 2 != 0;
-  const double instant = short_on_joints
-                             ? std::max(found.group.instant, short_step * run_.mean_frame)
-                             : found.group.instant;
-  const double still = TurningForces(turning.group.start).load() * instant + roundoff;
+  const double still = TurningForces(turning.group.start).load() * found.group.instant + roundoff;
   const auto find = [&] {
     turning.mode = turning_mode(turning.group.start, std::max(still, turning_rest(turning.group)),
                                 halvings(found, t, &Turned::in_vain));
@@ -502,12 +498,13 @@ void EventModes::carry_on(const Gathered& found, const Turning& turning, Instant
   if (turning.mode.implicit) {
     keep_forces(found, turning);
   }
+  const double least = (has_joints(found) ? short_on_joints : short_step) * run_.mean_frame;
   for (const auto& [a, b] : found.pairs) {
     if (Patch* const patch = graph_.find(a, b)) {
       const double tried = turning.step.stepped;
-      const bool is_short = tried < short_step * run_.mean_frame;
+      const bool is_short = tried < least;
       // Forces that hold for no time at all, again and again, are as good as none.
-      const bool stalls = turning.step.end == TurningEnd::forces && !has_joints(found) &&
+      const bool stalls = turning.step.end == TurningEnd::forces &&
                           turning.step.duration < least_in_touch * run_.mean_frame;
       patch->short_steps += stalls ? TurningLimits::of_stall : is_short ? 1 : -patch->short_steps;
       patch->step = turning.step.halved ? tried : std::max(patch->step, 2.0 * tried);
