@@ -24,7 +24,7 @@ constexpr double rough = 1e8;
 /// Steps that are shorter than this part of a frame are short: see `TurningLimits`.
 constexpr double short_step = 1e-4;
 /// The same on joints, among which a step costs several times as much.
-constexpr double short_on_joints = 1e-3;
+constexpr double short_on_joints = 3e-4;
 /// Steps are not shortened below this part of a frame to end where bodies still touch.
 constexpr double least_in_touch = 1e-9;
 
