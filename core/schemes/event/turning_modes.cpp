@@ -25,6 +25,9 @@ constexpr double rough = 1e8;
 constexpr double short_step = 1e-4;
 /// The same on joints, among which a step costs several times as much.
 constexpr double short_on_joints = 1e-3;
+/// On joints searches for forces are halved so many times from the first: a solve costs several
+/// times as much, and what is not found is stepped over.
+constexpr int halvings_on_joints = 2;
 /// Steps are not shortened below this part of a frame to end where bodies still touch.
 constexpr double least_in_touch = 1e-9;
 
@@ -191,8 +194,10 @@ void EventModes::find_forces(const Gathered& found, Turning& turning, Instant t)
   const double roundoff = 64.0 * epsilon * fastest;
   const double still = TurningForces(turning.group.start).load() * found.group.instant + roundoff;
   const auto find = [&] {
-    turning.mode = turning_mode(turning.group.start, std::max(still, turning_rest(turning.group)),
-                                halvings(found, t, &Turned::in_vain));
+    const int fewer = has_joints(found) ? halvings_on_joints : 0;
+    turning.mode = turning_mode(
+        turning.group.start, std::max(still, turning_rest(turning.group)),
+        std::min(halvings(found, t, &Turned::in_vain) + fewer, TurningLimits::most_halvings));
     if (turning.mode.searched) {
       count_in_vain(found, turning, t, &Turned::in_vain);
     }
