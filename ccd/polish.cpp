@@ -51,9 +51,24 @@ class Polish {
   /// One step of Newton's method; false if it does not separate better.
   bool step() {
     find_pins();
-    if (pins_ > 1) {
-      return false;
+    if (pins_ <= 1) {
+      return step_pinned();
     }
+    // Nearly across an edge of each, it is across one of them, or across both, which was tried.
+    const std::array<Vector3, 2> pins = both_;
+    pins_ = 1;
+    for (const Vector3& pin : pins) {
+      pin_ = pin;
+      if (step_pinned()) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  /// The same, staying across the edge that there is.
+  bool step_pinned() {
     const DifferencePoint p = pair_.support(n_);
     // On the unit sphere a function of degree 1 bends by its own value more.
     const Matrix3 H = curvature(pair_.a, pair_.R_WA, m_a()) +
@@ -83,7 +98,6 @@ class Polish {
     return false;
   }
 
- private:
   [[nodiscard]] Vector3 m_a() const { return pair_.R_WA.transpose() * n_; }
   [[nodiscard]] Vector3 m_b() const { return -(pair_.R_WB.transpose() * n_); }
 
@@ -94,6 +108,7 @@ class Polish {
         const Vector3 edge = R * e;
         if (std::abs(edge.dot(n_)) < pinned) {
           pin_ = edge;
+          both_[pins_ < 1 ? 0 : 1] = edge;
           ++pins_;
         }
       };
@@ -155,6 +170,7 @@ class Polish {
   Vector3& n_;
   double& separation_;
   Vector3 pin_ = Vector3::Zero();
+  std::array<Vector3, 2> both_;  ///< of several, the first and the last
   int pins_ = 0;
 };
 
