@@ -1,0 +1,495 @@
+// Which features of two shapes touch at a point of their manifold.
+#include "core/contacts/touch.hpp"
+#include "core/contacts/touch_rim.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace kairos {
+inline namespace core {
+namespace {
+
+using Kind = TouchFeature::Kind;
+
+/// The vertices and edges of a box or a hull.
+struct Corners {
+  std::vector<Vector3> vertices;
+  std::vector<std::array<std::size_t, 2>> edges;
+  double rounding = 0.0;
+  double size = 0.0;
+};
+
+Corners box_corners(const Box& box) {
+  Corners c;
+  for (std::size_t k = 0; k < 8; ++k) {
+    c.vertices.emplace_back(
+        Vector3((k & 1U) != 0 ? 1.0 : -1.0, (k & 2U) != 0 ? 1.0 : -1.0, (k & 4U) != 0 ? 1.0 : -1.0)
+            .cwiseProduct(box.half_extents));
+    for (const std::size_t bit : {1U, 2U, 4U}) {
+      if ((k & bit) == 0) {
+        c.edges.push_back({k, k | bit});
+      }
+    }
+  }
+  c.size = box.half_extents.norm();
+  return c;
+}
+
+Corners hull_corners(const Hull& hull) {
+  Corners c;
+  c.vertices = hull.core->vertices;
+  for (const auto& edge : hull.core->edges) {
+    c.edges.push_back({edge[0], edge[1]});
+  }
+  c.rounding = hull.rounding;
+  c.size = hull.core->radius;
+  return c;
+}
+
+std::optional<Corners> polytope_corners(const Shape& shape) {
+  if (const auto* box = std::get_if<Box>(&shape)) {
+    return box_corners(*box);
+  }
+  if (const auto* hull = std::get_if<Hull>(&shape)) {
+    return hull_corners(*hull);
+  }
+  return std::nullopt;
+}
+
+/// A corner is beyond the rim of a face if it is by more than this part of the size.
+constexpr double gone_over = 1e-13;
+/// A vertex is at a point of a manifold if it is nearer than this part of the size.
+constexpr double near_vertex = 1e-7;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+double radius_of(const Shape& shape) {
+  const double radius = bounding_radius(shape);
+  return std::isfinite(radius) ? radius : 0.0;
+}
+
+/// The corner or cap at a point of the surface (body frame), the normal pointing out of the body.
+std::optional<TouchFeature> ball_feature(const Shape& shape, const Vector3& x,
+                                         const Vector3& outward) {
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+    return TouchFeature{Kind::ball, Vector3::Zero(), Vector3::Zero(), sphere->radius};
+  }
+  if (const auto* capsule = std::get_if<Capsule>(&shape)) {
+    const Vector3 end = Vector3::UnitY() * std::copysign(0.5 * capsule->length, x.y());
+    const Vector3 from = x - capsule->radius * outward - end;
+    // The side goes on smoothly into the cap: it is the cap's only from its end on.
+    const bool side = capsule->length > 0.0 &&
+                      std::abs((from + end).y()) < std::abs(end.y()) - gone_over * capsule->radius;
+    if (side || from.norm() > near_vertex * capsule->radius) {
+      return std::nullopt;
+    }
+    return TouchFeature{Kind::ball, end, Vector3::Zero(), capsule->radius};
+  }
+  if (const auto c = polytope_corners(shape)) {
+    const Vector3 inside = x - c->rounding * outward;
+    for (const Vector3& vertex : c->vertices) {
+      if ((vertex - inside).norm() <= near_vertex * c->size) {
+        return TouchFeature{Kind::ball, vertex, Vector3::Zero(), c->rounding};
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+/// What is perpendicular to an edge has no more than this along it.
+constexpr double across_an_edge = 1e-6;
+
+/// A point of the surface is on a round side if it is this near to it, relative to its radius:
+/// where two of them touch at hardly any distance their normal is known only so well.
+constexpr double near_side = 1e-3;
+
+/// The radius of the side of a capsule or a cylinder, which is about y.
+std::optional<double> radius_of_side(const Shape& shape) {
+  if (const auto* capsule = std::get_if<Capsule>(&shape); capsule && capsule->length > 0.0) {
+    return capsule->radius;
+  }
+  const auto* cylinder = std::get_if<Cylinder>(&shape);
+  return cylinder != nullptr ? std::optional(cylinder->radius) : std::nullopt;
+}
+
+/// The rims of a cylinder, or that of a cone.
+std::vector<TouchFeature> rims_of_shape(const Shape& shape) {
+  std::vector<TouchFeature> rims;
+  const auto add = [&](double y, double radius) {
+    rims.push_back({Kind::rim, y * Vector3::UnitY(), Vector3::UnitY(), radius});
+  };
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
+    add(-0.5 * cylinder->length, cylinder->radius);
+    add(0.5 * cylinder->length, cylinder->radius);
+  } else if (const auto* cone = std::get_if<Cone>(&shape)) {
+    add(-0.25 * cone->height, cone->radius);
+  }
+  return rims;
+}
+
+/// The flat face within a rim.
+TouchFeature disc_of(const TouchFeature& rim) {
+  return {Kind::plane, rim.at, std::copysign(1.0, rim.at.y()) * Vector3::UnitY(), 0.0};
+}
+
+/// The rim that a point of the surface (body frame) is on, where it is tilted from what it touches:
+/// of one that lies flat no point touches alone.
+std::optional<TouchFeature> rim_feature(const Shape& shape, const Vector3& x,
+                                        const Vector3& outward) {
+  constexpr double flat = 1e-4;  // rad
+  for (const TouchFeature& rim : rims_of_shape(shape)) {
+    const double out = Vector3(x.x(), 0.0, x.z()).norm();
+    const double size = rim.radius + std::abs(rim.at.y());
+    if (std::abs(x.y() - rim.at.y()) <= near_vertex * size &&
+        std::abs(out - rim.radius) <= near_vertex * size &&
+        Vector3(outward.x(), 0.0, outward.z()).norm() >= flat) {
+      return rim;
+    }
+  }
+  return std::nullopt;
+}
+
+/// A ball about the place on the axis of a round side at which it touches a plane: as the side,
+/// while that is across it.
+std::optional<TouchFeature> place_on_side(const Shape& shape, const Vector3& x,
+                                          const Vector3& outward) {
+  const auto radius = radius_of_side(shape);
+  if (!radius || std::abs(outward.y()) > across_an_edge) {
+    return std::nullopt;
+  }
+  const Vector3 from = x - *radius * outward;
+  if (Vector3(from.x(), 0.0, from.z()).norm() > near_side * *radius) {
+    return std::nullopt;
+  }
+  return TouchFeature{Kind::ball, from.y() * Vector3::UnitY(), Vector3::Zero(), *radius};
+}
+
+/// The edge nearest to a point of the surface, of those that `across` (outward) is perpendicular
+/// to, or tilted from that by so much; of a capsule its axis.
+std::optional<TouchFeature> line_feature(const Shape& shape, const Vector3& x,
+                                         const Vector3& across, double tilted = across_an_edge) {
+  if (const auto radius = radius_of_side(shape)) {
+    const Vector3 from = x - *radius * across;
+    const bool is_on = std::abs(across.y()) <= tilted &&
+                       Vector3(from.x(), 0.0, from.z()).norm() <= near_side * *radius;
+    return is_on
+               ? std::optional(TouchFeature{Kind::line, Vector3::Zero(), Vector3::UnitY(), *radius})
+               : std::nullopt;
+  }
+  const auto c = polytope_corners(shape);
+  if (!c || c->rounding > 0.0) {
+    return std::nullopt;
+  }
+  std::optional<TouchFeature> best;
+  double nearest = near_vertex * c->size;
+  for (const auto& [i, j] : c->edges) {
+    const Vector3 direction = (c->vertices[j] - c->vertices[i]).normalized();
+    const Vector3 from = x - c->vertices[i];
+    const double distance = (from - direction * direction.dot(from)).norm();
+    if (std::abs(direction.dot(across)) <= tilted && distance <= nearest) {
+      nearest = distance;
+      best = TouchFeature{Kind::line, c->vertices[i], direction, 0.0};
+    }
+  }
+  return best;
+}
+
+/// The face, edge or corner that a ball with its middle at x (body frame) is on: the one nearest to
+/// x; nothing if none is known.
+std::optional<TouchFeature> under_ball(const Shape& shape, const Vector3& on,
+                                       const Vector3& outward, bool face, const Vector3& x) {
+  std::optional<TouchFeature> best;
+  double least = std::numeric_limits<double>::infinity();
+  const auto offer = [&](const std::optional<TouchFeature>& feature) {
+    const double beyond = feature ? beyond_region(*feature, shape, x) : least;
+    if (beyond < least) {
+      least = beyond;
+      best = feature;
+    }
+  };
+  if (face) {
+    offer(face_feature(shape, on, outward));
+  }
+  offer(line_feature(shape, on, outward));
+  offer(ball_feature(shape, on, outward));
+  return best;
+}
+
+/// Whether no corner of a shape is beyond the plane through x with this normal (body frame), by
+/// more than roundoff.
+bool is_behind(const Shape& shape, const Vector3& x, const Vector3& normal) {
+  constexpr double rounded = 1e-14;
+  const auto c = polytope_corners(shape);
+  return c && std::all_of(c->vertices.begin(), c->vertices.end(), [&](const Vector3& vertex) {
+           return normal.dot(vertex - x) <= rounded * c->size;
+         });
+}
+
+/// The edges that cross at a point of the surfaces, none of whose corners is there; nothing where
+/// they are nearly parallel: where they cross then runs away. The normal may be that of a face,
+/// from which edges that cross at its rim are tilted: they are what touches if they separate the
+/// two.
+std::optional<Touch> crossing(const Shape& shape_a, const Pose& a, const Vector3& on_a,
+                              const Shape& shape_b, const Pose& b, const Vector3& on_b,
+                              const Vector3& n) {
+  constexpr double nearly_parallel = 1e-3;
+  constexpr double most_tilted = 0.3;
+  const Vector3 n_A = a.orientation.conjugate() * n;
+  const Vector3 n_B = b.orientation.conjugate() * n;
+  const auto edge_a = line_feature(shape_a, on_a, n_A, most_tilted);
+  const auto edge_b = line_feature(shape_b, on_b, n_B, most_tilted);
+  if (!edge_a || !edge_b) {
+    return std::nullopt;
+  }
+  Vector3 across = (a.orientation * edge_a->direction).cross(b.orientation * edge_b->direction);
+  if (across.norm() < nearly_parallel) {
+    return std::nullopt;
+  }
+  const auto in_plane = [](const TouchFeature& edge, const Vector3& normal) {
+    return std::abs(edge.direction.dot(normal)) <= across_an_edge;
+  };
+  if (!in_plane(*edge_a, n_A) || !in_plane(*edge_b, n_B)) {
+    across *= (across.dot(n) < 0.0 ? -1.0 : 1.0) / across.norm();
+    if (!is_behind(shape_a, edge_a->at, a.orientation.conjugate() * across) ||
+        !is_behind(shape_b, edge_b->at, b.orientation.conjugate() * -across)) {
+      return std::nullopt;
+    }
+  }
+  Touch touch;
+  touch.on_a = *edge_a;
+  touch.on_b = *edge_b;
+  touch.normal = n;
+  return touch;
+}
+
+/// Whether a feature is that of a ball, which is round.
+bool is_round(const std::optional<TouchFeature>& feature) {
+  return feature && feature->kind == Kind::ball && feature->radius > 0.0;
+}
+
+/// Where a corner or a rim that touches at x is, body frame.
+Vector3 place_of(const TouchFeature& feature, const Vector3& x) {
+  return feature.kind == Kind::rim ? x : feature.at;
+}
+
+/// Whether a shape is a box or a hull without rounding.
+bool is_polytope(const Shape& shape) {
+  const auto c = polytope_corners(shape);
+  return c && !(c->rounding > 0.0);
+}
+
+/// Whether two corners, two edges, or a corner and an edge tell the normal with which they touch:
+/// two vertices do not, nor a vertex and an edge, nor edges that are parallel.
+bool has_normal(const Touch& touch, const Pose& a, const Pose& b) {
+  if (touch.on_a.kind == Kind::line && touch.on_b.kind == Kind::line) {
+    return (a.orientation * touch.on_a.direction)
+               .cross(b.orientation * touch.on_b.direction)
+               .norm() >= 1e-6;
+  }
+  return touch.on_a.radius + touch.on_b.radius > 0.0;
+}
+
+}  // namespace
+
+std::optional<std::vector<TouchFeature>> corners_of(const Shape& shape) {
+  std::vector<TouchFeature> corners;
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+    corners.push_back({Kind::ball, Vector3::Zero(), Vector3::Zero(), sphere->radius});
+  } else if (const auto* capsule = std::get_if<Capsule>(&shape)) {
+    for (const double end : {-0.5, 0.5}) {
+      corners.push_back(
+          {Kind::ball, Vector3::UnitY() * end * capsule->length, Vector3::Zero(), capsule->radius});
+    }
+  } else if (const auto c = polytope_corners(shape)) {
+    for (const Vector3& vertex : c->vertices) {
+      corners.push_back({Kind::ball, vertex, Vector3::Zero(), c->rounding});
+    }
+  } else if (!std::holds_alternative<HalfSpace>(shape)) {
+    return std::nullopt;
+  }
+  return corners;
+}
+
+std::optional<std::vector<TouchFeature>> extremes_of(const Shape& shape) {
+  std::vector<TouchFeature> rims = rims_of_shape(shape);
+  if (rims.empty()) {
+    return corners_of(shape);
+  }
+  if (const auto* cone = std::get_if<Cone>(&shape)) {
+    rims.push_back({Kind::ball, 0.75 * cone->height * Vector3::UnitY(), Vector3::Zero(), 0.0});
+  }
+  return rims;
+}
+
+double height_over(const TouchFeature& extreme, const Vector3& at, const Vector3& axis,
+                   const Vector3& n, const Vector3& q) {
+  const double middle = n.dot(at - q);
+  return middle - (extreme.kind == Kind::rim ? extreme.radius * (n - axis * axis.dot(n)).norm()
+                                             : extreme.radius);
+}
+
+std::vector<TouchFeature> faces_of(const Shape& shape) {
+  std::vector<TouchFeature> faces;
+  for (const TouchFeature& rim : rims_of_shape(shape)) {
+    faces.push_back(disc_of(rim));
+  }
+  if (const auto* box = std::get_if<Box>(&shape)) {
+    for (int k = 0; k < 3; ++k) {
+      for (const double side : {-1.0, 1.0}) {
+        const Vector3 out = side * Vector3::Unit(k);
+        faces.push_back({Kind::plane, out * box->half_extents[k], out, 0.0});
+      }
+    }
+  } else if (const auto* hull = std::get_if<Hull>(&shape);
+             hull != nullptr && !(hull->rounding > 0.0)) {
+    const Polytope& p = *hull->core;
+    for (std::size_t f = 0; f < p.faces.size(); ++f) {
+      faces.push_back({Kind::plane, p.vertices[p.faces[f][0]], p.normals[f], 0.0});
+    }
+  }
+  return faces;
+}
+
+std::vector<TouchFeature> edges_of(const Shape& shape) {
+  std::vector<TouchFeature> edges;
+  if (const auto c = polytope_corners(shape); c && !(c->rounding > 0.0)) {
+    for (const auto& [i, j] : c->edges) {
+      const Vector3& at = c->vertices[i];
+      edges.push_back({Kind::line, at, (c->vertices[j] - at).normalized(), 0.0});
+    }
+  }
+  return edges;
+}
+
+TouchFeature face_feature(const Shape& shape, const Vector3& x, const Vector3& outward) {
+  TouchFeature face{Kind::plane, x, outward, 0.0};
+  if (std::holds_alternative<Box>(shape)) {
+    Eigen::Index axis = 0;
+    outward.cwiseAbs().maxCoeff(&axis);
+    face.direction = (outward[axis] < 0.0 ? -1.0 : 1.0) * Vector3::Unit(axis);
+  } else if (const auto* hull = std::get_if<Hull>(&shape)) {
+    double nearest = -1.0;
+    for (const Vector3& n : hull->core->normals) {
+      if (n.dot(outward) > nearest) {
+        nearest = n.dot(outward);
+        face.direction = n;
+      }
+    }
+  }
+  for (const TouchFeature& rim : rims_of_shape(shape)) {
+    if (rim.at.y() * outward.y() > 0.0) {
+      return disc_of(rim);
+    }
+  }
+  if (const auto c = polytope_corners(shape)) {
+    double support = -std::numeric_limits<double>::infinity();
+    for (const Vector3& vertex : c->vertices) {
+      support = std::max(support, face.direction.dot(vertex));
+    }
+    face.at += face.direction * (support + c->rounding - face.direction.dot(x));
+  }
+  return face;
+}
+
+std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point,
+                              const Shape& shape_a, const Pose& a, const Shape& shape_b,
+                              const Pose& b) {
+  const ContactManifold::Point& p = manifold.points[point];
+  const Vector3& n = manifold.normal;
+  const Vector3 on_a = a.to_body(p.position - 0.5 * p.gap * n);
+  const Vector3 on_b = b.to_body(p.position + 0.5 * p.gap * n);
+  const Vector3 n_A = a.orientation.conjugate() * n;
+  const Vector3 n_B = b.orientation.conjugate() * n;
+  Touch touch;
+  touch.normal = n;
+  auto corner_a = ball_feature(shape_a, on_a, n_A);
+  auto corner_b = ball_feature(shape_b, on_b, -n_B);
+  if (is_round(corner_a) && !std::holds_alternative<HalfSpace>(shape_b)) {
+    const Vector3 middle = b.to_body(a.to_world(corner_a->at));
+    const auto under = under_ball(shape_b, on_b, -n_B, manifold.face_of_b, middle);
+    if (under) {
+      touch.on_a = *corner_a;
+      touch.on_b = *under;
+      return touch;
+    }
+  } else if (is_round(corner_b) && !std::holds_alternative<HalfSpace>(shape_a)) {
+    const Vector3 middle = a.to_body(b.to_world(corner_b->at));
+    const auto under = under_ball(shape_a, on_a, n_A, manifold.face_of_a, middle);
+    if (under) {
+      touch.on_a = *under;
+      touch.on_b = *corner_b;
+      return touch;
+    }
+  }
+  if (manifold.face_of_a || manifold.face_of_b) {
+    const std::optional<TouchFeature> face_a =
+        manifold.face_of_a ? std::optional(face_feature(shape_a, on_a, n_A)) : std::nullopt;
+    const std::optional<TouchFeature> face_b =
+        manifold.face_of_b ? std::optional(face_feature(shape_b, on_b, -n_B)) : std::nullopt;
+    // A round side rolls on the face of the other.
+    const auto rolls = [](const Shape& shape, const Vector3& x, const Vector3& outward) {
+      auto rim = rim_feature(shape, x, outward);
+      return rim ? rim : place_on_side(shape, x, outward);
+    };
+    corner_a = corner_a || !face_b ? corner_a : rolls(shape_a, on_a, n_A);
+    corner_b = corner_b || !face_a ? corner_b : rolls(shape_b, on_b, -n_B);
+    const double past_a =
+        corner_b && face_a
+            ? beyond_region(*face_a, shape_a, a.to_body(b.to_world(place_of(*corner_b, on_b))))
+            : infinity;
+    const double past_b =
+        corner_a && face_b
+            ? beyond_region(*face_b, shape_b, b.to_body(a.to_world(place_of(*corner_a, on_a))))
+            : infinity;
+    // A corner that has gone over the rim of the face is on it no more: its edge is, at the rim.
+    const double size = radius_of(shape_a) + radius_of(shape_b);
+    if (std::min(past_a, past_b) > gone_over * size) {
+      if (auto edges = crossing(shape_a, a, on_a, shape_b, b, on_b, n)) {
+        return edges;
+      }
+      // Nearly parallel: the place at the rim is held, which is no corner and has no rim.
+      corner_a.reset();
+      corner_b.reset();
+    }
+    // Of two corners at one place the one that is on the face of the other: it may slide on.
+    const bool has_a = corner_a && !(corner_b && past_a < past_b);
+    // Where edges that are nearly parallel cross, the point moves with a until the next look.
+    if (face_b && (has_a || !(face_a && corner_b))) {
+      touch.on_a = corner_a.value_or(TouchFeature{Kind::ball, on_a, Vector3::Zero(), 0.0});
+      touch.on_b = *face_b;
+    } else {
+      touch.on_a = *face_a;
+      touch.on_b = corner_b.value_or(TouchFeature{Kind::ball, on_b, Vector3::Zero(), 0.0});
+    }
+    return touch;
+  }
+  const auto edge_a = line_feature(shape_a, on_a, n_A);
+  const auto edge_b = line_feature(shape_b, on_b, -n_B);
+  if (edge_a && edge_b && !corner_a && !corner_b &&
+      (a.orientation * edge_a->direction).cross(b.orientation * edge_b->direction).norm() <
+          across_an_edge) {
+    // Sides that are parallel touch at both ends.
+    corner_a = place_on_side(shape_a, on_a, n_A);
+    corner_b = corner_a ? edge_b : place_on_side(shape_b, on_b, -n_B);
+  }
+  if ((corner_a || edge_a) && (corner_b || edge_b)) {
+    touch.on_a = corner_a ? *corner_a : *edge_a;
+    touch.on_b = corner_b ? *corner_b : *edge_b;
+    if (has_normal(touch, a, b)) {
+      return touch;
+    }
+  }
+  if (!is_polytope(shape_a) || !is_polytope(shape_b)) {
+    return std::nullopt;
+  }
+  // The place is held until the next look, at the plane that separates them.
+  touch.on_a = {Kind::plane, on_a, n_A, 0.0};
+  touch.on_b = {Kind::ball, on_b, Vector3::Zero(), 0.0};
+  return touch;
+}
+
+}  // namespace core
+}  // namespace kairos
