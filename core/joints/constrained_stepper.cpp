@@ -69,7 +69,9 @@ class ConstrainedStepper final : public Stepper {
     const JointProjection positions = joints.project_positions(end, states, island.constant_force);
     if (!positions.converged) {
       result.ok = false;
-      result.reason = "the joints fit no position within reach; a shorter step may help";
+      result.reason =
+          "the joints fit no position within reach: what is stretched straight between two points "
+          "has none that moves (give it slack), and a shorter step may help elsewhere";
       return result;
     }
     const JointProjection velocities = joints.project_velocities(end, states);
