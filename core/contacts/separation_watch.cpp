@@ -100,6 +100,9 @@ bool belongs(const TouchFeature& corner, const TouchFeature& held) {
   if (held.kind == Kind::line) {
     return (from - held.direction * held.direction.dot(from)).norm() <= same_corner * size;
   }
+  if (held.kind == Kind::rim) {
+    return corner.kind == Kind::rim && corner.at == held.at;
+  }
   return held.kind == Kind::ball && from.norm() <= same_corner * size;
 }
 
@@ -330,7 +333,10 @@ class Watcher {
       spin /= sine;
     } else {
       // The normal of a ball goes round as its middle goes.
-      const double round = 0.5 * (touch.on_a.radius + touch.on_b.radius);
+      double round = 0.0;
+      for (const TouchFeature* const f : {&touch.on_a, &touch.on_b}) {
+        round += f->kind == Kind::rim ? 0.0 : 0.5 * f->radius;
+      }
       turning += speeds / round;
       spin += bends / round + 3.0 * (speeds / round) * (speeds / round);
     }

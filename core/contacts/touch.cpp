@@ -126,6 +126,37 @@ TouchNow ball_on_line(const Placed& a, const Placed& b) {
   return now;
 }
 
+/// A ball of b at a rim of a. The second derivative of the distance from a circle is that from a
+/// point in the plane of its axis, and along the circle its slope there over how far out it is.
+TouchNow ball_on_rim(const Placed& a, const Placed& b) {
+  const Vector3& e = a.direction;
+  const Vector3 between = b.at - a.at;
+  const double along = e.dot(between);
+  const Vector3 from_axis = between - along * e;
+  const double out = from_axis.norm();
+  const Vector3 q = from_axis / out;
+  const double distance = Vector3(along * e + (out - a.radius) * q).norm();
+  const Vector3 n = (along * e + (out - a.radius) * q) / distance;
+  TouchNow now;
+  now.normal = n;
+  now.gap = distance - b.radius;
+  now.point_a = a.at + a.radius * q;
+  now.point_b = b.at - b.radius * n;
+  const Vector3 centre = b.velocity(b.at);
+  const Vector3 seen = centre - a.velocity(b.at);  // in the frame of a
+  const Vector3 t = e.cross(q);
+  const Vector3 m = t.cross(n);
+  const double across = m.dot(seen) / distance;
+  const double round = t.dot(seen) * (out - a.radius) / (distance * out);
+  const Vector3 n_rate = across * m + round * t + a.w.cross(n);
+  now.normal_bias = n.dot(b.centripetal(b.at) - a.centripetal(b.at) - 2.0 * a.w.cross(seen)) +
+                    across * m.dot(seen) + round * t.dot(seen);
+  now.velocity = b.velocity(now.point_b) - a.velocity(now.point_a);
+  const Vector3 x_rate = centre - b.radius * n_rate;
+  now.bias = b.centripetal(b.at) - b.radius * b.w.cross(n_rate) - a.w.cross(x_rate - a.v);
+  return now;
+}
+
 /// Two lines, or what is round them. Their nearest points, the feet, move along them.
 TouchNow line_on_line(const Placed& a, const Placed& b, const Vector3& side) {
   const Vector3 m = a.direction.cross(b.direction);
@@ -179,6 +210,12 @@ TouchNow look_at_bodies(const Touch& touch, const BodyState& state_a, const Body
   }
   if (touch.on_b.kind == Kind::plane) {
     return turned_round(touch.on_a.kind == Kind::rim ? rim_on_plane(b, a) : ball_on_plane(b, a));
+  }
+  if (touch.on_a.kind == Kind::rim) {
+    return ball_on_rim(a, b);
+  }
+  if (touch.on_b.kind == Kind::rim) {
+    return turned_round(ball_on_rim(b, a));
   }
   if (touch.on_a.kind == Kind::line) {
     return ball_on_line(a, b);

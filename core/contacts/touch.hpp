@@ -17,7 +17,7 @@ struct TouchFeature {
     ball,   ///< all within `radius` of a point; radius 0: a vertex
     plane,  ///< of a face
     line,   ///< of an edge; with a radius all within that of it: the side of a capsule
-    rim,    ///< a circle, of this radius, about `at` and across `direction`: it touches planes
+    rim,    ///< a circle, of this radius, about `at` and across `direction`
   };
   Kind kind = Kind::ball;
   Vector3 at = Vector3::Zero();         ///< body frame, m
@@ -26,7 +26,8 @@ struct TouchFeature {
   double radius = 0.0;                  ///< m
 };
 
-/// Two features that touch at one point: a ball and a plane, a line or a ball, or two lines.
+/// Two features that touch at one point: a ball and a plane, a line, a rim or a ball, two lines, or
+/// a rim and a plane.
 struct Touch {
   std::size_t a = 0;  ///< places in the group
   std::size_t b = 0;

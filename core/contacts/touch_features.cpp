@@ -215,6 +215,11 @@ std::optional<TouchFeature> under_ball(const Shape& shape, const Vector3& on,
   }
   offer(line_feature(shape, on, outward));
   offer(ball_feature(shape, on, outward));
+  if (std::holds_alternative<Cylinder>(shape)) {
+    for (const TouchFeature& rim : rims_of_shape(shape)) {
+      offer(rim.at.y() * x.y() > 0.0 ? std::optional(rim) : std::nullopt);
+    }
+  }
   return best;
 }
 

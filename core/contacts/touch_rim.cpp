@@ -119,7 +119,10 @@ std::optional<Sides> region(const TouchFeature& feature, const Shape& shape) {
     return Sides{};
   }
   if (feature.kind == Kind::rim) {
-    return Sides{};
+    const double side = std::copysign(1.0, feature.at.y());
+    return std::holds_alternative<Cylinder>(shape)
+               ? Sides{{-side * Vector3::UnitY(), -std::abs(feature.at.y())}}
+               : Sides{};
   }
   if (const auto* cylinder = std::get_if<Cylinder>(&shape);
       cylinder && feature.kind == Kind::line) {
@@ -183,7 +186,8 @@ double TouchRim::beyond(const Touch& touch, const BodyState& a, const BodyState&
     at = of_a ? now.point_a : now.point_b;
   }
   const Vector3 x = own.to_body(at);
-  const double beyond = beyond_sides(sides, x);
+  const double beyond =
+      std::max(beyond_sides(sides, x), inner > 0.0 ? -beyond_disc(inner, x) : -infinity);
   return radius > 0.0 ? std::max(beyond, beyond_disc(radius, x)) : beyond;
 }
 
@@ -204,6 +208,10 @@ std::optional<std::vector<TouchRim>> rims_of(const Touch& touch, const Shape& a,
     if (!sides) {
       return std::nullopt;
     }
+    const bool rim = feature.kind == Kind::rim;
+    if (rim && other.kind == Kind::plane) {
+      continue;  // all round it is the lowest
+    }
     if (lines) {
       // The faces beside an edge are left out: corners that come down are watched anyway.
       std::erase_if(*sides, [&](const Side& side) {
@@ -212,7 +220,7 @@ std::optional<std::vector<TouchRim>> rims_of(const Touch& touch, const Shape& a,
     }
     const double radius = radius_of_disc(feature, of_a ? a : b);
     if (!sides->empty() || radius > 0.0) {
-      rims.push_back({std::move(*sides), radius, of_a, of_lines});
+      rims.push_back({std::move(*sides), radius, rim ? feature.radius : 0.0, of_a, of_lines});
     }
   }
   return rims;
@@ -233,7 +241,10 @@ std::optional<std::vector<TouchRim::Side>> sides_of_face(const Shape& shape,
 double beyond_region(const TouchFeature& feature, const Shape& shape, const Vector3& x) {
   const auto sides = region(feature, shape);
   const double radius = radius_of_disc(feature, shape);
-  const double beyond = sides ? beyond_sides(*sides, x) : infinity;
+  double beyond = sides ? beyond_sides(*sides, x) : infinity;
+  if (feature.kind == Kind::rim) {
+    beyond = std::max(beyond, -beyond_disc(feature.radius, x));
+  }
   return radius > 0.0 ? std::max(beyond, beyond_disc(radius, x)) : beyond;
 }
 

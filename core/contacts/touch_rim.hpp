@@ -21,6 +21,7 @@ struct TouchRim {
   };
   std::vector<Side> sides;  ///< none, and no radius: the feature has no end
   double radius = 0.0;      ///< of a disc about the body's y axis, m; 0: it is none
+  double inner = 0.0;       ///< inside is no nearer to that axis than this, m
   bool of_a = false;        ///< the feature is that of a
   bool of_lines = false;    ///< the point is where they touch, otherwise the middle of the ball
 

@@ -56,12 +56,13 @@ auto slope(const F& f, double h) {
 TEST_CASE("velocities and accelerations of touches are derivatives", "[friction]") {
   // All pairs of features that touch in one point: balls, planes, edges, sides of capsules, rims.
   Random random(20261130);
-  const std::pair<Kind, Kind> pairs[] = {{Kind::rim, Kind::plane},  {Kind::plane, Kind::rim},
+  const std::pair<Kind, Kind> pairs[] = {{Kind::rim, Kind::ball},   {Kind::ball, Kind::rim},
+                                         {Kind::rim, Kind::plane},  {Kind::plane, Kind::rim},
                                          {Kind::ball, Kind::plane}, {Kind::plane, Kind::ball},
                                          {Kind::ball, Kind::ball},  {Kind::line, Kind::ball},
                                          {Kind::ball, Kind::line},  {Kind::line, Kind::line}};
-  for (int trial = 0; trial < 600; ++trial) {
-    const auto [of_a, of_b] = pairs[trial % 6];
+  for (std::size_t trial = 0; trial < 1000; ++trial) {
+    const auto [of_a, of_b] = pairs[trial % std::size(pairs)];
     Touch touch;
     touch.on_a = feature(of_a, trial % 4 < 2 ? 0.3 : 0.0, random);
     touch.on_b = feature(of_b, trial % 3 == 0 ? 0.4 : 0.1, random);
