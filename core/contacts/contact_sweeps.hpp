@@ -57,6 +57,7 @@ class ContactSweeps {
 
   /// From here on this touch has no friction; whether it had some.
   bool make_smooth(std::size_t touch) { return std::exchange(blocks_[touch].friction, 0.0) != 0.0; }
+  [[nodiscard]] bool is_smooth(std::size_t touch) const { return blocks_[touch].friction == 0.0; }
 
   /// Rows: normal and tangents of a touch.
   [[nodiscard]] const Eigen::Matrix3d& axes(std::size_t touch) const { return blocks_[touch].axes; }

@@ -52,11 +52,15 @@ double hold_normals(const TurningState& state, TurningMode& mode) {
 }
 
 /// What a touch does that took this impulse and has these rates at the end of the step, along its
-/// normal and two tangents, m/s; what is slower than `least` is at rest. Among redundant touches
+/// normal and two tangents, m/s; what is slower than `least` is at rest. `smooth`: it rubbed not,
+/// rough or not. Among redundant touches
 /// one may be at the edge of its cone and not slide.
-FrictionChoice choice_of(const Touch& touch, const Vector3& normal, const Vector3& impulse,
-                         const Vector3& rates, double least) {
+FrictionChoice choice_of(const Touch& touch, bool smooth, const Vector3& normal,
+                         const Vector3& impulse, const Vector3& rates, double least) {
   const double pressed = normal.dot(impulse);
+  if (smooth && pressed > 0.0) {
+    return {Does::slides, Vector3::Zero()};
+  }
   if (!(pressed > 0.0) && !(touch.rough && !impulse.isZero(0.0))) {
     return {rates.x() <= least ? Does::slides : Does::opens, Vector3::Zero()};
   }
@@ -197,7 +201,8 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
     }
     mode.choices.clear();
     for (std::size_t k = 0; k < touches.size(); ++k) {
-      mode.choices.push_back(choice_of(state.touches[k], touches[k].normal, swept.impulse[k],
+      mode.choices.push_back(choice_of(state.touches[k], sweeps.is_smooth(k), touches[k].normal,
+                                       swept.impulse[k],
                                        sweeps.rate(k, swept.velocities) + rates[k], held * scale));
     }
     taken = hold_normals(state, mode);

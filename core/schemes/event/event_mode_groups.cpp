@@ -333,6 +333,11 @@ void EventModes::bring_group(std::span<const BodyIndex> bodies, Instant t) {
   for (const BodyIndex i : bodies) {
     motions_.book(i, t);
     motions_.bring(i, t);
+    for (const BodyIndex j : graph_.partners(i)) {
+      if (run_.model.mobility(j) == Mobility::driven) {
+        motions_.bring(j, t);  // it may be struck next
+      }
+    }
   }
 }
 
