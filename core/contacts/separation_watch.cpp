@@ -74,24 +74,36 @@ struct Candidate {
   double least = 0.0;            ///< what comes nearer strikes, m
 };
 
-/// What is held of a body: a rim that is, or lies on a line or a face that is, is held, too.
+/// Whether what is held bears an extreme, too: a rim that is held, one of which points that are far
+/// apart are, or what is on an axis of which two places are held, no nearer to each other than it
+/// is to them. (Two places side by side let it turn about them.)
 bool is_borne(const TouchFeature& extreme, const std::vector<TouchFeature>& held) {
   const double size = extreme.at.norm() + extreme.radius;
-  int on_axis = 0;
+  double low = infinity;
+  double high = -infinity;
   int on_rim = 0;
+  double span = 0.0;
+  Vector3 first = Vector3::Zero();
   for (const TouchFeature& h : held) {
     if (h.kind == Kind::rim && h.at == extreme.at) {
       return extreme.kind == Kind::rim;
     }
     const double out = Vector3(h.at.x(), 0.0, h.at.z()).norm();
-    on_axis += h.kind == Kind::rim || (h.radius > 0.0 && out <= same_corner * size) ? 1 : 0;
-    on_rim += extreme.kind == Kind::rim && h.kind == Kind::ball && h.radius == 0.0 &&
-                      std::abs(h.at.y() - extreme.at.y()) <= near_rim * size &&
-                      std::abs(out - extreme.radius) <= near_rim * size
-                  ? 1
-                  : 0;
+    if (h.kind == Kind::rim || (h.radius > 0.0 && out <= same_corner * size)) {
+      low = std::min(low, h.at.y());
+      high = std::max(high, h.at.y());
+    }
+    if (extreme.kind == Kind::rim && h.kind == Kind::ball && h.radius == 0.0 &&
+        std::abs(h.at.y() - extreme.at.y()) <= near_rim * size &&
+        std::abs(out - extreme.radius) <= near_rim * size) {
+      first = on_rim == 0 ? h.at : first;
+      span = std::max(span, (h.at - first).norm());
+      ++on_rim;
+    }
   }
-  return extreme.radius > 0.0 && (on_axis >= 2 || on_rim >= 3);
+  const double beyond = std::max({low - extreme.at.y(), extreme.at.y() - high, 0.0});
+  const bool on_axis = high > low && beyond <= high - low;
+  return extreme.radius > 0.0 && (on_axis || (on_rim >= 3 && span >= extreme.radius));
 }
 
 bool belongs(const TouchFeature& corner, const TouchFeature& held) {
