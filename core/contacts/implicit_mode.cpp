@@ -22,6 +22,9 @@ constexpr double settled = 1e-10;
 constexpr double accepted = 1e-3;
 /// What parts slower than this, in the same units, is held, and what slides slower sticks.
 constexpr double held = 1e-7;
+/// Impulses of redundant touches that are so many times what the loads give to all bodies in the
+/// step are known to no digit, and what they do against each other as the bodies turn is no less.
+constexpr double absurd = 1e5;
 /// So often forces are looked for at most.
 constexpr int most_holds = 4;
 
@@ -69,6 +72,14 @@ FrictionChoice choice_of(const Touch& touch, bool smooth, const Vector3& normal,
   }
   const Vector3 along = impulse - pressed * normal;
   return {Does::slides, along.isZero(0.0) ? along : Vector3(-along.normalized())};
+}
+
+double largest(std::span<const Vector3> impulses) {
+  double most = 0.0;
+  for (const Vector3& impulse : impulses) {
+    most = std::max(most, impulse.norm());
+  }
+  return most;
 }
 
 /// Among the points of a pair that all stick, impulses that do the same can be shared in many ways:
@@ -179,6 +190,10 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
   }
   const double scale =
       forces.load() * h + fastest * std::numeric_limits<double>::epsilon() / settled;
+  double moved = 0.0;  // kg
+  for (const GroupBody& body : state.bodies) {
+    moved += moves(body) ? 1.0 / body.inverse_mass : 0.0;
+  }
   ContactSweeps::Swept swept;
   // What holding normals takes from velocities, forces do not: they are looked for again.
   double taken = 0.0;
@@ -197,6 +212,10 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
     }
     if (!(swept.changed <= accepted * scale)) {
       mode.refusal = "impulses of contacts were looked for touch by touch, and did not settle";
+      return mode;
+    }
+    if (largest(swept.impulse) > absurd * moved * scale) {
+      mode.refusal = "impulses of contacts that are redundant were found far too large";
       return mode;
     }
     mode.choices.clear();
