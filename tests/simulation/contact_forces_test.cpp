@@ -1,10 +1,9 @@
 // Contact that lasts, of bodies that feel springs and drag: loads change while they touch.
 
 #include "core/reading/scene_reader.hpp"
-#include "simulation/penetration.hpp"
 #include "simulation/simulate.hpp"
 #include "tests/catch.hpp"
-#include "tests/simulation/ledger_check.hpp"
+#include "tests/simulation/whole_run.hpp"
 
 #include <fmt/format.h>
 
@@ -41,14 +40,7 @@ std::string spring(const std::string& body, const std::string& anchor, double st
 Simulation check(const std::string& text) {
   const Scene scene = parse_scene(text, "test.toml");
   Simulation sim = simulate(scene, {});
-  INFO(sim.result.reason);
-  REQUIRE(sim.result.status == RunStatus::completed);
-  tests::check_explained(sim.result.ledger);
-  const Model model(scene);
-  const PenetrationProbe probe(model);
-  for (std::size_t k = 0; k < sim.trajectory.frame_times().size(); ++k) {
-    CHECK_FALSE(probe.first(sim.trajectory.frame_state(k)));
-  }
+  tests::check_whole(sim, scene);
   CHECK(sim.result.ledger.line(EnergyLine::friction) <= 0.0);
   return sim;
 }

@@ -15,11 +15,11 @@ namespace kairos::tests {
 
 /// It ends, the ledger closes, and in no frame do bodies overlap or joints open. `truncated`: of
 /// all that flowed, what steps may be off.
-inline void check_whole(const Simulation& sim, const std::string& text, double truncated = 1e-9) {
+inline void check_whole(const Simulation& sim, const Scene& scene, double truncated = 1e-9) {
   INFO(sim.result.reason);
   REQUIRE(sim.result.status == RunStatus::completed);
   check_explained(sim.result.ledger);
-  const Model model(parse_scene(text, "test.toml"));
+  const Model model(scene);
   const PenetrationProbe probe(model);
   double open = 0.0;
   std::vector<BodyState> states;
@@ -41,6 +41,10 @@ inline void check_whole(const Simulation& sim, const std::string& text, double t
   // What is left of motion is truncation of steps: a small part of all that flowed.
   CHECK(std::abs(sim.result.ledger.line(EnergyLine::truncation)) <
         truncated * sim.result.ledger.flow());
+}
+
+inline void check_whole(const Simulation& sim, const std::string& text, double truncated = 1e-9) {
+  check_whole(sim, parse_scene(text, "test.toml"), truncated);
 }
 
 }  // namespace kairos::tests

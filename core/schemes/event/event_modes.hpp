@@ -179,7 +179,7 @@ class EventModes {
   struct GivenMotion {
     Motion motion;
     bool curved = false;
-    Polynomial<3> spent{};  ///< curved: what friction has taken by a time, as the x, J
+    Polynomial<3> spent{};  ///< curved: as `EventMotions::SurfaceForce::spent`
   };
   void commit(const Gathered& group, const FlatMode& mode, Instant t, const Adopt& adopt,
               const GivenMotion* alone = nullptr, const Turning* turning = nullptr);

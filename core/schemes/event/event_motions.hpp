@@ -145,15 +145,15 @@ class EventMotions {
     BodyIndex a = 0;
     BodyIndex b = 0;
     bool slides = false;
-    bool rides = false;               ///< goes with what is driven
-    bool curved = false;              ///< slides: its direction changes, `spent` tells the work
+    bool rides = false;   ///< goes with what is driven
+    bool curved = false;  ///< `spent` tells the work: its direction or its force changes
     Vector3 force = Vector3::Zero();  ///< on b, N
     Vector3 along = Vector3::Zero();  ///< its tangential part
     Vector3 arm_a = Vector3::Zero();  ///< of spheres, from the centre to where they touch, m
     Vector3 arm_b = Vector3::Zero();
     Vector3 belt_a = Vector3::Zero();  ///< velocity of the surface beside that of the body, m/s
     Vector3 belt_b = Vector3::Zero();
-    Polynomial<3> spent{};  ///< since `begun`, as the x, J
+    Polynomial<3> spent{};  ///< since `begun`, J: x, friction; y, belts; z, what is driven
     Instant begun{};
     BodyState from_a{};  ///< as far as the ledger has followed it
     BodyState from_b{};
