@@ -31,7 +31,7 @@ enum class Grade {
   exact,     ///< a root of a polynomial, to roundoff
   enclosed,  ///< proven by intervals
   sampled,   ///< looked for at so many points, then bisected
-  stepped,   ///< at the start of an implicit step, which is of first order: see `implicit_mode`
+  stepped,   ///< at the start of an implicit step: see `implicit_mode`
 };
 /// The word for it in `events.csv`.
 [[nodiscard]] std::string_view to_string(Grade grade);

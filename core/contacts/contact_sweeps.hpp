@@ -55,9 +55,8 @@ class ContactSweeps {
                             std::span<const Vector3> begin, double settled, bool rubs,
                             bool last_resort = false, int halvings = 0) const;
 
-  /// From here on this touch has no friction; whether it had some.
-  bool make_smooth(std::size_t touch) { return std::exchange(blocks_[touch].friction, 0.0) != 0.0; }
-  [[nodiscard]] bool is_smooth(std::size_t touch) const { return blocks_[touch].friction == 0.0; }
+  [[nodiscard]] double friction(std::size_t touch) const { return blocks_[touch].friction; }
+  void set_friction(std::size_t touch, double mu) { blocks_[touch].friction = mu; }
 
   /// Rows: normal and tangents of a touch.
   [[nodiscard]] const Eigen::Matrix3d& axes(std::size_t touch) const { return blocks_[touch].axes; }

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace kairos {
@@ -25,8 +26,19 @@ constexpr double held = 1e-7;
 /// Impulses of redundant touches that are so many times what the loads give to all bodies in the
 /// step are known to no digit, and what they do against each other as the bodies turn is no less.
 constexpr double absurd = 1e5;
+/// An impulse that presses by less than this part of what it is presses by roundoff.
+constexpr double rounded = 1e-14;
+/// Friction that is bounded where none was.
+constexpr double nearly_rough = 1e3;
 /// So often forces are looked for at most.
 constexpr int most_holds = 4;
+
+/// What presses of an impulse, N s: of one along the surface nothing, whatever its components were
+/// rounded to.
+double pressing(const Vector3& normal, const Vector3& impulse) {
+  const double along = normal.dot(impulse);
+  return along > rounded * impulse.norm() ? along : 0.0;
+}
 
 /// Leaves nothing along the normals of what is held; returns the most that it changed, m/s.
 double hold_normals(const TurningState& state, TurningMode& mode) {
@@ -55,19 +67,19 @@ double hold_normals(const TurningState& state, TurningMode& mode) {
 }
 
 /// What a touch does that took this impulse and has these rates at the end of the step, along its
-/// normal and two tangents, m/s; what is slower than `least` is at rest. `smooth`: it rubbed not,
-/// rough or not. Among redundant touches
+/// normal and two tangents, m/s; what is slower than `least` is at rest. Among redundant touches
 /// one may be at the edge of its cone and not slide.
-FrictionChoice choice_of(const Touch& touch, bool smooth, const Vector3& normal,
-                         const Vector3& impulse, const Vector3& rates, double least) {
-  const double pressed = normal.dot(impulse);
-  if (smooth && pressed > 0.0) {
+FrictionChoice choice_of(double friction, const Vector3& normal, const Vector3& impulse,
+                         const Vector3& rates, double least) {
+  const bool rough = std::isinf(friction);
+  const double pressed = pressing(normal, impulse);
+  if (friction == 0.0 && pressed > 0.0) {
     return {Does::slides, Vector3::Zero()};
   }
-  if (!(pressed > 0.0) && !(touch.rough && !impulse.isZero(0.0))) {
+  if (!(pressed > 0.0) && !(rough && !impulse.isZero(0.0))) {
     return {rates.x() <= least ? Does::slides : Does::opens, Vector3::Zero()};
   }
-  if (touch.friction > 0.0 && (touch.rough || rates.tail<2>().norm() <= least)) {
+  if (friction > 0.0 && (rough || rates.tail<2>().norm() <= least)) {
     return {Does::sticks, Vector3::Zero()};
   }
   const Vector3 along = impulse - pressed * normal;
@@ -129,16 +141,29 @@ void share_alike(std::span<const Touch> touches, std::span<const SweptTouch> poi
 }
 
 /// Friction without a bound holds along the surfaces what nothing presses. What parts all the same
-/// rubs no more: it goes on by itself, and the force of the step would act on the other alone.
-/// Whether some did.
+/// does not go on so: the force of the step would act on the other alone. From here on its friction
+/// is bounded: it parts by itself, or slides, hardly pressed. Whether some did.
 bool let_part(std::span<const SweptTouch> touches, const ContactSweeps::Swept& swept,
               std::span<const Vector3> rates, double least, ContactSweeps& sweeps) {
   bool any = false;
   for (std::size_t k = 0; k < touches.size(); ++k) {
-    const bool pressed = touches[k].normal.dot(swept.impulse[k]) > 0.0;
-    if (!pressed && !swept.impulse[k].isZero(0.0) &&
+    if (std::isinf(sweeps.friction(k)) && !swept.impulse[k].isZero(0.0) &&
+        !(pressing(touches[k].normal, swept.impulse[k]) > 0.0) &&
         (sweeps.rate(k, swept.velocities) + rates[k]).x() > least) {
-      any = sweeps.make_smooth(k) || any;
+      sweeps.set_friction(k, nearly_rough);
+      any = true;
+    }
+  }
+  return any;
+}
+
+/// Where that does not settle: they go on without friction. Whether there are some.
+bool let_slide(std::span<const SweptTouch> touches, ContactSweeps& sweeps) {
+  bool any = false;
+  for (std::size_t k = 0; k < touches.size(); ++k) {
+    if (std::isinf(touches[k].friction) && sweeps.friction(k) == nearly_rough) {
+      sweeps.set_friction(k, 0.0);
+      any = true;
     }
   }
   return any;
@@ -147,7 +172,7 @@ bool let_part(std::span<const SweptTouch> touches, const ContactSweeps::Swept& s
 }  // namespace
 
 TurningMode implicit_mode(const TurningState& state, double h, std::span<const Vector3> warm,
-                          bool last_resort, int halvings) {
+                          bool last_resort, int halvings, std::span<const Vector3> missed) {
   TurningMode mode;
   mode.implicit = true;
   const TurningForces forces(state);
@@ -187,6 +212,9 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
     if (!state.touches[k].belt.isZero(0.0)) {
       rates.back().tail<2>() += (sweeps.axes(k) * state.touches[k].belt).tail<2>();
     }
+    if (!missed.empty()) {
+      rates.back() += sweeps.axes(k) * missed[k];
+    }
   }
   const double scale =
       forces.load() * h + fastest * std::numeric_limits<double>::epsilon() / settled;
@@ -210,6 +238,9 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
     while (let_part(touches, swept, rates, held * scale, sweeps)) {
       sweep();
     }
+    if (!(swept.changed <= accepted * scale) && let_slide(touches, sweeps)) {
+      sweep();
+    }
     if (!(swept.changed <= accepted * scale)) {
       mode.refusal = "impulses of contacts were looked for touch by touch, and did not settle";
       return mode;
@@ -220,8 +251,7 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
     }
     mode.choices.clear();
     for (std::size_t k = 0; k < touches.size(); ++k) {
-      mode.choices.push_back(choice_of(state.touches[k], sweeps.is_smooth(k), touches[k].normal,
-                                       swept.impulse[k],
+      mode.choices.push_back(choice_of(sweeps.friction(k), touches[k].normal, swept.impulse[k],
                                        sweeps.rate(k, swept.velocities) + rates[k], held * scale));
     }
     taken = hold_normals(state, mode);
@@ -237,6 +267,8 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
     mode.flies = mode.flies && mode.choices[k].does == Does::opens;
     mode.forces.force.emplace_back(swept.impulse[k] / h);
     sweeps.push(k, mode.forces.force.back(), accelerations);
+    mode.foreseen.emplace_back(sweeps.axes(k).transpose() *
+                               (sweeps.rate(k, swept.velocities) + rates[k]));
   }
   for (const Vector6& a : accelerations) {
     mode.forces.accelerations.push_back({a.head<3>(), a.tail<3>()});

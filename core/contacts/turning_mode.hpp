@@ -22,7 +22,9 @@ struct TurningMode {
   bool flies = false;             ///< nothing is held
   bool implicit = false;          ///< forces are those of a step, see `implicit_mode`
   bool keeps_all = false;         ///< what is not held goes on with what is, too
-  bool searched = false;          ///< what is likely did not verify: changes of it were tried
+  /// By touch: velocities at the end of an implicit step as its forces were found for, m/s.
+  std::vector<Vector3> foreseen;
+  bool searched = false;  ///< what is likely did not verify: changes of it were tried
   int solves = 0;
 };
 

@@ -245,6 +245,8 @@ class Step {
     }
     if (!mode_.implicit) {
       cut_at_strikes(raw_, strike_gap);
+    } else {
+      reach();
     }
     end_mode();
     finish();
@@ -266,6 +268,18 @@ class Step {
       }
     }
     return strikes;
+  }
+
+  /// What the velocities of an implicit step have come to, which was to be what it was sought for.
+  void reach() {
+    const std::vector<TouchNow> there = touches_of(touching_at(step_.stepped));
+    for (std::size_t k = 0; k < there.size(); ++k) {
+      const Touch& touch = group_.start.touches[k];
+      const Vector3 before =
+          look_at(touch, group_.start.states[touch.a], group_.start.states[touch.b]).normal;
+      step_.reached.push_back(Quaternion::FromTwoVectors(there[k].normal, before) *
+                              (there[k].velocity + touch.belt));
+    }
   }
 
   [[nodiscard]] std::vector<BodyState> free_states(double s) const {

@@ -80,6 +80,9 @@ struct TurningStep {
   /// By place: x, what the joints of the mechanism of which it is the first body take from what
   /// drives them, because contact forces act, J.
   std::vector<Polynomial<3>> driven;
+  /// By touch: velocities that the integrated motions of an implicit step end with, m/s, turned
+  /// with the normals back to its start.
+  std::vector<Vector3> reached;
   std::int64_t evaluations = 0;
 };
 

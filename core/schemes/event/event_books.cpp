@@ -9,6 +9,12 @@
 
 namespace kairos {
 inline namespace core {
+namespace {
+
+/// A motion is asked for at most so much after its end, as a part of a frame: roundoff.
+constexpr double most_late = 1e-9;
+
+}  // namespace
 
 void EventMotions::book_all(Instant t) {
   for (const Island& island : run_.model.islands()) {
@@ -77,7 +83,13 @@ void EventMotions::book(Flow& flow, Instant t) {
   }
   // The state at the end of a segment is the stepper's; the motion agrees with it up to roundoff
   // only.
-  const bool whole = !(end_of(first) - t > 0.0) && !support(first);
+  const double left = end_of(first) - t;
+  if (left < -most_late * run_.mean_frame) {
+    run_.stop(end_of(first), "the motion of '" + run_.model.body(first).name +
+                                 "' ends and nothing follows it: an error of the program, worth a "
+                                 "report with the scene");
+  }
+  const bool whole = !(left > 0.0) && !support(first);
   for (std::size_t k = 0; k < flow.states.size(); ++k) {
     const BodyIndex i = flow.island.bodies[k];
     now_[i] = whole ? flow.states[k] : at(i, t);

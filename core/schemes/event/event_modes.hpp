@@ -211,8 +211,9 @@ class EventModes {
   [[nodiscard]] bool goes_on_implicitly(const Gathered& found, Instant t) const;
   [[nodiscard]] static bool has_joints(const Gathered& found);
   void find_forces(const Gathered& found, Turning& turning, Instant t);
-  [[nodiscard]] double given_until(const Turning& turning, Instant t) const;
+  [[nodiscard]] Instant given_until(const Turning& turning) const;
   [[nodiscard]] bool ends_in_touch(const Gathered& found, const Turning& turning) const;
+  void correct(Turning& turning, Instant t, double h, const SettleOptions& asked);
   [[nodiscard]] bool step_over(const Gathered& found, Turning& turning, Instant t,
                                const SettleOptions& asked);
   static void count_implicit(const Turning& turning, const std::pair<int, int>& left, bool is_short,

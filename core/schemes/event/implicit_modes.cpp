@@ -18,16 +18,37 @@ constexpr int most_exact_on_joints = 100;
 /// An implicit step takes this part of a frame at most, and so many follow each other before forces
 /// at an instant are looked for again: twice as many each time that there are none.
 constexpr double implicit_part = 1.0 / 16.0;
-/// The same of few touches: these steps are of first order, and cost little there.
+/// The same of few touches: these steps cost little there.
 constexpr double part_of_few = 1.0 / 128.0;
 constexpr std::size_t few_touches = 4;
 constexpr int first_stretch = 16;
 constexpr int longest_stretch = 1024;
+/// So often an implicit step is corrected at most.
+constexpr int most_corrections = 2;
 constexpr int most_halvings = 30;
 /// Where impulses of a step are not found, those of one half as long may be: so often.
 constexpr int most_refused = 4;
 /// What ends a step after less than this part of it strikes at once.
 constexpr double least_part = 1e-9;
+
+/// How far velocities at the end of an implicit step are from what its impulses were found for,
+/// m/s, at most, of what is held.
+double most_missed(const TurningMode& mode, const TurningStep& step) {
+  double most = 0.0;
+  for (std::size_t k = 0; k < mode.choices.size(); ++k) {
+    if (mode.choices[k].does != FrictionChoice::Does::opens) {
+      most = std::max(most, (step.reached[k] - mode.foreseen[k]).norm());
+    }
+  }
+  return most;
+}
+
+/// Whether something gives the group energy through what touches: a drive or a belt.
+bool something_drives(const TurningGroup& group) {
+  return !group.drivers.empty() ||
+         std::any_of(group.start.touches.begin(), group.start.touches.end(),
+                     [](const Touch& touch) { return !touch.belt.isZero(0.0); });
+}
 
 }  // namespace
 
@@ -75,7 +96,7 @@ bool EventModes::step_over(const Gathered& found, Turning& turning, Instant t,
   const double before = implicit_steps(found).second > 0 ? next_step(found) : frame;
   const bool few = turning.group.start.touches.size() <= few_touches;
   double h =
-      std::min({(few ? part_of_few : implicit_part) * frame, given_until(turning, t), before});
+      std::min({(few ? part_of_few : implicit_part) * frame, given_until(turning) - t, before});
   bool halved = false;
   int refused = 0;
   for (int round = 0; round < most_halvings; ++round, h *= 0.5, halved = true) {
@@ -95,6 +116,13 @@ bool EventModes::step_over(const Gathered& found, Turning& turning, Instant t,
     }
     const std::unique_ptr<Stepper> stepper = stepper_(h);
     turning.step = turning_step(turning.group, turning.mode, *stepper, t, h);
+    if (turning.step.refusal.empty() && turning.step.stepped < h) {
+      h = 2.0 * turning.step.stepped;  // impulses are those of a step that is so long
+      continue;
+    }
+    if (few || something_drives(turning.group)) {
+      correct(turning, t, h, asked);
+    }
     turning.step.halved = turning.step.halved || halved;
     const bool made = turning.step.refusal.empty() && turning.step.duration > least_part * h;
     const bool parts = made && h > least_part * frame && !ends_in_touch(found, turning);
@@ -107,6 +135,37 @@ bool EventModes::step_over(const Gathered& found, Turning& turning, Instant t,
     why_not_ = "a corner of a body in touch is to strike at once";
   }
   return false;
+}
+
+/// Looks again for impulses of an implicit step where the motions that follow from them end with
+/// other velocities than those that they were sought for: where bodies are, and what drives them,
+/// is taken at the start of the step. With what was missed made good the step is of second order
+/// but for touches that begin or end to stick in it. Where nothing drives, what is missed costs
+/// energy as its square only.
+void EventModes::correct(Turning& turning, Instant t, double h, const SettleOptions& asked) {
+  const auto& touches = turning.group.start.touches;
+  std::vector<Vector3> missed(touches.size(), Vector3::Zero());
+  for (int round = 0; round < most_corrections && turning.step.refusal.empty(); ++round) {
+    const double before = most_missed(turning.mode, turning.step);
+    for (std::size_t k = 0; k < touches.size(); ++k) {
+      missed[k] += turning.step.reached[k] - turning.mode.foreseen[k];
+    }
+    TurningMode next = implicit_mode(turning.group.start, h, turning.mode.forces.force,
+                                     asked.last_resort, 0, missed);
+    run_.cost.contact_solves += next.solves;
+    if (!next.refusal.empty()) {
+      return;
+    }
+    next.keeps_all = turning.all;
+    const std::unique_ptr<Stepper> stepper = stepper_(h);
+    TurningStep step = turning_step(turning.group, next, *stepper, t, h);
+    if (!step.refusal.empty() || step.stepped < h || !(step.duration > least_part * h) ||
+        !(most_missed(next, step) < before)) {
+      return;
+    }
+    turning.mode = std::move(next);
+    turning.step = std::move(step);
+  }
 }
 
 /// How a pair goes on stepping over what forces are not known of: a stretch of such steps begins,

@@ -84,7 +84,7 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
     return turned(seeds) && !asked.pressed && !asked.unloaded && fly(found, turning, t, adopt);
   }
   const double frame = run_.options.step > 0.0 ? run_.options.step : run_.mean_frame;
-  const double longest = std::min({frame, given_until(turning, t), next_step(found)});
+  const double longest = std::min({frame, given_until(turning) - t, next_step(found)});
   const bool steps_over = asked.step_over || goes_on_implicitly(found, t);
   if (!steps_over) {
     find_forces(found, turning, t);
@@ -144,11 +144,11 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
   return true;
 }
 
-/// For how long from an instant on it is known how what is driven moves, s.
-double EventModes::given_until(const Turning& turning, Instant t) const {
-  double until = run_.epoch_end() - t;
+/// Up to when it is known how what is driven moves.
+Instant EventModes::given_until(const Turning& turning) const {
+  Instant until = run_.epoch_end();
   for (const GroupDriver& driver : turning.group.drivers) {
-    until = std::min(until, driver.motion.end() - t);
+    until = std::min(until, driver.motion.end());
   }
   return until;
 }
@@ -516,10 +516,9 @@ void EventModes::carry_on(const Gathered& found, const Turning& turning, Instant
       count_implicit(turning, left, is_short, *patch);
     }
   }
-  const Instant end = t + turning.step.duration;
-  if (!(turning.step.duration < given_until(turning, t))) {
-    return;  // it is settled anew then
-  }
+  // Where what is driven goes on otherwise, what touches it is settled before, and the others here.
+  const Instant given = given_until(turning);
+  const Instant end = turning.step.duration < given - t ? t + turning.step.duration : given;
   const bool strikes = turning.step.end == TurningEnd::strike;
   if (strikes) {
     const auto& [a, b] = found.pairs[turning.step.pair];
