@@ -156,10 +156,13 @@ class Watcher {
   }
 
  private:
+  [[nodiscard]] const Pose& piece(bool of_a) const {
+    return of_a ? watch_.pair.piece_a : watch_.pair.piece_b;
+  }
   /// How far from the origin of the body what is followed of it is at most, m: the middle of a
   /// ball, the points of a rim.
-  [[nodiscard]] double reach(const TouchFeature& f) const {
-    return f.at.norm() + (f.kind == Kind::rim ? f.radius : 0.0);
+  [[nodiscard]] double reach(const TouchFeature& f, bool of_a) const {
+    return f.at.norm() + (f.kind == Kind::rim ? f.radius : 0.0) + piece(of_a).position.norm();
   }
 
   /// `but_held`: what is held on such a face is not asked about.
@@ -185,14 +188,15 @@ class Watcher {
                            is_borne(corner, held);
       if (!is_held) {
         mine.push_back(k);
-        arm = std::max(arm, reach(corner));
+        arm = std::max(arm, reach(corner, !of_a));
       }
     }
     if (corners.empty()) {
       return;  // a half-space: no corner tells on which side it is
     }
     const Motion& motion = of_a ? watch_.motion_a : watch_.motion_b;
-    c.bend = bend(carrier, other, motion.orientation(0.0) * plane.direction, of_a, arm);
+    c.bend = bend(carrier, other,
+                  motion.orientation(0.0) * (piece(of_a).orientation * plane.direction), of_a, arm);
     candidates_.push_back(std::move(c));
   }
 
@@ -227,7 +231,7 @@ class Watcher {
         }
       }
     }
-    for (const Touch& edges : crossing_edges(at.a.pose, at.b.pose)) {
+    for (const Touch& edges : crossing_edges(at.piece_a, at.piece_b)) {
       if (is_best(nullptr, false, &edges)) {
         spare_edges_ = edges;
         found = Spare::edges;
@@ -243,7 +247,7 @@ class Watcher {
       // a detector found them apart goes with one of them, whose corners are behind it.
       for (const bool of_a : {true, false}) {
         TouchFeature& plane = of_a ? plane_of_a_ : plane_of_b_;
-        const Quaternion& q = (of_a ? at.a : at.b).pose.orientation;
+        const Quaternion& q = (of_a ? at.piece_a : at.piece_b).orientation;
         plane = {Kind::plane, Vector3::Zero(),
                  q.conjugate() * (of_a ? pair.apart : Vector3(-pair.apart)), 0.0};
         double highest = -infinity;
@@ -277,7 +281,12 @@ class Watcher {
         }
         const Vector3 n = (across.dot(at_b - at_a) > 0.0 ? 1.0 : -1.0) * across.normalized();
         if (n.dot(at_a - a.position) > 0.0 && n.dot(b.position - at_b) > 0.0) {
-          found.push_back({.on_a = edge_a, .on_b = edge_b, .normal = n});
+          found.push_back({.on_a = edge_a,
+                           .on_b = edge_b,
+                           .normal = n,
+                           .of_pieces = watch_.pair.of_pieces,
+                           .piece_a = watch_.pair.piece_a,
+                           .piece_b = watch_.pair.piece_b});
         }
       }
     }
@@ -315,18 +324,18 @@ class Watcher {
   void add_touch(const Touch& touch, bool is_held) {
     Candidate c;
     c.touch = &touch;
-    double arm_a = reach(touch.on_a);
-    double arm_b = reach(touch.on_b);
+    double arm_a = reach(touch.on_a, true);
+    double arm_b = reach(touch.on_b, false);
     for (std::size_t k = 0; k < watch_.pair.corners_a.size(); ++k) {
       const TouchFeature& corner = watch_.pair.corners_a[k];
-      arm_a = std::max(arm_a, reach(corner));
+      arm_a = std::max(arm_a, reach(corner, true));
       if (!is_held || !belongs(corner, touch.on_a)) {
         c.corners_a.push_back(k);
       }
     }
     for (std::size_t k = 0; k < watch_.pair.corners_b.size(); ++k) {
       const TouchFeature& corner = watch_.pair.corners_b[k];
-      arm_b = std::max(arm_b, reach(corner));
+      arm_b = std::max(arm_b, reach(corner, false));
       if (!is_held || !belongs(corner, touch.on_b)) {
         c.corners_b.push_back(k);
       }
@@ -338,9 +347,11 @@ class Watcher {
     double spin = 2.0 * (a_.spin + b_.spin);
     if (touch.on_a.kind == Kind::line && touch.on_b.kind == Kind::line) {
       // The normal of two lines turns as fast as they do, divided by the sine of their angle.
-      const double sine = (watch_.motion_a.orientation(0.0) * touch.on_a.direction)
-                              .cross(watch_.motion_b.orientation(0.0) * touch.on_b.direction)
-                              .norm();
+      const double sine =
+          (watch_.motion_a.orientation(0.0) * (piece(true).orientation * touch.on_a.direction))
+              .cross(watch_.motion_b.orientation(0.0) *
+                     (piece(false).orientation * touch.on_b.direction))
+              .norm();
       turning /= sine;
       spin /= sine;
     } else {
@@ -360,6 +371,8 @@ class Watcher {
   struct Placed {
     BodyState a;
     BodyState b;
+    Pose piece_a;  ///< in the world
+    Pose piece_b;
     /// Its place and its axis.
     struct Extreme {
       Vector3 at;
@@ -369,13 +382,20 @@ class Watcher {
     std::vector<Extreme> corners_b;
 
     Placed(const Watcher& of, double s)
-        : a{of.watch_.motion_a.pose(s), {}}, b{of.watch_.motion_b.pose(s), {}} {
+        : a{of.watch_.motion_a.pose(s), {}},
+          b{of.watch_.motion_b.pose(s), {}},
+          piece_a(composed(a.pose, of.watch_.pair.piece_a, of.watch_.pair.of_pieces)),
+          piece_b(composed(b.pose, of.watch_.pair.piece_b, of.watch_.pair.of_pieces)) {
       for (const TouchFeature& corner : of.watch_.pair.corners_a) {
-        corners_a.push_back(placed(corner, a.pose));
+        corners_a.push_back(placed(corner, piece_a));
       }
       for (const TouchFeature& corner : of.watch_.pair.corners_b) {
-        corners_b.push_back(placed(corner, b.pose));
+        corners_b.push_back(placed(corner, piece_b));
       }
+    }
+    static Pose composed(const Pose& body, const Pose& piece, bool of_pieces) {
+      return of_pieces ? Pose{body.to_world(piece.position), body.orientation * piece.orientation}
+                       : body;
     }
     static Extreme placed(const TouchFeature& corner, const Pose& pose) {
       return {pose.to_world(corner.at), corner.kind == Kind::rim
@@ -405,7 +425,7 @@ class Watcher {
   [[nodiscard]] double height(const Candidate& c, const Placed& at) const {
     const TurningPair& pair = watch_.pair;
     if (c.plane != nullptr) {
-      const Pose& carrier = c.of_a ? at.a.pose : at.b.pose;
+      const Pose& carrier = c.of_a ? at.piece_a : at.piece_b;
       const Vector3 n = carrier.orientation * c.plane->direction;
       const Vector3 q = carrier.to_world(c.plane->at);
       return c.of_a ? lowest(c.corners_b, pair.corners_b, at.corners_b, n, q)

@@ -20,6 +20,11 @@ struct Placed {
         origin(state.pose.position),
         v(state.twist.linear),
         w(state.twist.angular) {}
+  /// Of a piece of the body that is there.
+  Placed(const TouchFeature& feature, const Pose& piece, const BodyState& state)
+      : Placed({feature.kind, piece.to_world(feature.at), piece.orientation * feature.direction,
+                feature.radius},
+               state) {}
 
   [[nodiscard]] Vector3 velocity(const Vector3& x) const { return v + w.cross(x - origin); }
   /// Acceleration of the material point at x without the body's own accelerations.
@@ -200,8 +205,10 @@ TouchNow turned_round(TouchNow now) {
 
 /// Without belts.
 TouchNow look_at_bodies(const Touch& touch, const BodyState& state_a, const BodyState& state_b) {
-  const Placed a(touch.on_a, state_a);
-  const Placed b(touch.on_b, state_b);
+  const Placed a =
+      touch.of_pieces ? Placed(touch.on_a, touch.piece_a, state_a) : Placed(touch.on_a, state_a);
+  const Placed b =
+      touch.of_pieces ? Placed(touch.on_b, touch.piece_b, state_b) : Placed(touch.on_b, state_b);
   if (touch.on_a.kind == Kind::line && touch.on_b.kind == Kind::line) {
     return line_on_line(a, b, touch.normal);
   }

@@ -43,6 +43,11 @@ struct Touch {
   /// Velocity of the surface of b beside that of a, world frame, m/s: of belts. Along the surface,
   /// which is a face of what the belt is on, and never moves.
   Vector3 belt = Vector3::Zero();
+  /// Features may be those of pieces of the bodies, in frames of their own: where these are.
+  bool of_pieces = false;
+  Pose piece_a;
+  Pose piece_b;
+  std::size_t watched = 0;  ///< of the group's `TurningPair`s
 };
 
 /// A touch at two states. Rates and accelerations are of b along a.

@@ -180,12 +180,13 @@ double beyond_sides(const Sides& sides, const Vector3& x) {
 
 double TouchRim::beyond(const Touch& touch, const BodyState& a, const BodyState& b) const {
   const Pose& own = of_a ? a.pose : b.pose;
-  Vector3 at = (of_a ? b : a).pose.to_world((of_a ? touch.on_b : touch.on_a).at);
+  const Pose& other = of_a ? touch.piece_b : touch.piece_a;
+  Vector3 at = (of_a ? b : a).pose.to_world(other.to_world((of_a ? touch.on_b : touch.on_a).at));
   if (of_lines) {
     const TouchNow now = look_at(touch, a, b);
     at = of_a ? now.point_a : now.point_b;
   }
-  const Vector3 x = own.to_body(at);
+  const Vector3 x = (of_a ? touch.piece_a : touch.piece_b).to_body(own.to_body(at));
   const double beyond =
       std::max(beyond_sides(sides, x), inner > 0.0 ? -beyond_disc(inner, x) : -infinity);
   return radius > 0.0 ? std::max(beyond, beyond_disc(radius, x)) : beyond;

@@ -263,11 +263,35 @@ class Step {
       if (until < step_.duration) {
         step_.duration = until;
         step_.end = TurningEnd::strike;
-        step_.pair = p;
+        step_.pair = group_.pairs[p].of;
         strikes = true;
       }
     }
+    for (const Unwatched& far : group_.unwatched) {
+      stay_away(far, motions);
+    }
     return strikes;
+  }
+
+  /// Ends the step before pieces that nothing watches could have met.
+  void stay_away(const Unwatched& far, const std::vector<Motion>& motions) {
+    const double speeds = speeds_of(far.a, far.b, motions);
+    if (speeds * step_.duration > far.distance) {
+      step_.duration = far.distance / speeds;
+      step_.end = TurningEnd::step;
+    }
+  }
+
+  /// Bounds how fast points of both come nearer to each other in the step, m/s.
+  [[nodiscard]] double speeds_of(std::size_t a, std::size_t b,
+                                 const std::vector<Motion>& motions) const {
+    double speeds = 0.0;
+    for (const std::size_t i : {a, b}) {
+      const Motion motion = motion_of(i, motions);
+      speeds += motion.speed_bound(0.0, step_.duration) +
+                group_.start.radius[i] * motion.angular_speed_bound(0.0, step_.duration);
+    }
+    return speeds;
   }
 
   /// What the velocities of an implicit step have come to, which was to be what it was sought for.
@@ -355,7 +379,7 @@ class Step {
         const Touch& touch = state.touches[k];
         const double gap = look_at(touch, state.states[touch.a], state.states[touch.b]).gap;
         if (mode_.choices[k].does != Does::opens &&
-            !(std::abs(gap - touch.gap) <= drift * group_.pairs[touch.pair].nearest)) {
+            !(std::abs(gap - touch.gap) <= drift * group_.pairs[touch.watched].nearest)) {
           return false;
         }
       }
@@ -366,22 +390,42 @@ class Step {
   [[nodiscard]] double strike_time(std::size_t p, const std::vector<Motion>& motions, double least,
                                    double duration) const {
     const TurningPair& pair = group_.pairs[p];
+    if (pair.apart_by > pair.nearest &&
+        pair.apart_by - pair.nearest > speeds_of(pair.a, pair.b, motions) * step_.duration) {
+      return duration;
+    }
     SeparationWatch watch{pair, motion_of(pair.a, motions), motion_of(pair.b, motions), {}, {},
                           least};
     std::vector<Touch> open;
     for (std::size_t k = 0; k < group_.start.touches.size(); ++k) {
       const Touch& touch = group_.start.touches[k];
-      if (touch.pair == p) {
+      if (touch.watched == p) {
         (mode_.choices[k].does != Does::opens ? watch.held : open).push_back(touch);
       }
     }
-    if (watch.held.empty() && pair.planes_a.empty() && pair.planes_b.empty()) {
+    for (const Touch& touch : group_.shared) {
+      if (touch.watched == p && is_held(touch)) {
+        watch.held.push_back(touch);
+      }
+    }
+    if (watch.held.empty() && pair.planes_a.empty() && pair.planes_b.empty() && !pair.of_pieces) {
       if (!mode_.keeps_all) {
         return duration;  // it is met by the detector as any other
       }
       watch.open = std::move(open);
     }
     return watch.strike_time(duration);
+  }
+
+  /// Whether the touch that this one is, seen from a piece beside, is held.
+  [[nodiscard]] bool is_held(const Touch& shared) const {
+    for (std::size_t k = 0; k < group_.start.touches.size(); ++k) {
+      const Touch& touch = group_.start.touches[k];
+      if (touch.pair == shared.pair && touch.point == shared.point) {
+        return mode_.choices[k].does != Does::opens;
+      }
+    }
+    return false;
   }
 
   [[nodiscard]] Motion motion_of(std::size_t i, const std::vector<Motion>& motions) const {
@@ -582,7 +626,7 @@ class Step {
     Eigen::MatrixXd leaks = of_body;
     Eigen::MatrixXd of_driver = of_body;
     Eigen::MatrixXd of_pair =
-        Eigen::MatrixXd::Zero(nodes, static_cast<Eigen::Index>(group_.pairs.size()));
+        Eigen::MatrixXd::Zero(nodes, static_cast<Eigen::Index>(group_.body_pairs));
     Eigen::MatrixXd of_belt = of_pair;
     Eigen::MatrixXd of_surface = of_pair;
     for (int j = 0; j < nodes; ++j) {

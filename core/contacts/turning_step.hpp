@@ -6,6 +6,7 @@
 #include "core/force.hpp"
 #include "core/stepper.hpp"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,19 @@ struct TurningPair {
   const Shape* shape_b = nullptr;
   /// Along which a detector found them apart, from a to b, world, unit; zero: unknown.
   Vector3 apart = Vector3::Zero();
+  /// Where both have parts, a pair of these: features are in their frames.
+  bool of_pieces = false;
+  Pose piece_a;
+  Pose piece_b;
+  double apart_by = 0.0;  ///< how far apart pieces are at least, m
+  std::size_t of = 0;     ///< as `Touch::pair` counts
+};
+
+/// Pieces of two bodies that nothing watches: as far apart as this at least, m.
+struct Unwatched {
+  std::size_t a = 0;
+  std::size_t b = 0;
+  double distance = 0.0;
 };
 
 /// A body of a group that is driven.
@@ -44,9 +58,14 @@ struct TurningGroup {
   std::vector<Vector3> constant_force;  ///< by place, N
   /// By place: forces that depend on the state or on time, of the body alone; not owned.
   std::vector<std::vector<const Force*>> forces;
-  std::vector<GroupMechanism> mechanisms;   ///< what hangs together by joints
-  std::vector<GroupDriver> drivers;         ///< what is driven
-  std::vector<TurningPair> pairs;           ///< as `Touch::pair` counts
+  std::vector<GroupMechanism> mechanisms;            ///< what hangs together by joints
+  std::vector<GroupDriver> drivers;                  ///< what is driven
+  std::vector<TurningPair> pairs;                    ///< as `Touch::watched` counts
+  std::size_t body_pairs = 0;                        ///< as `Touch::pair` counts
+  std::vector<std::shared_ptr<const Shape>> pieces;  ///< that pairs refer to
+  std::vector<Unwatched> unwatched;
+  /// Touches that are others as seen from a piece beside: of those with the same pair and point.
+  std::vector<Touch> shared;
   std::vector<std::vector<TouchRim>> rims;  ///< by touch
 };
 

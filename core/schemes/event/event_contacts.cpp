@@ -309,15 +309,21 @@ bool EventContacts::parts_all_over(BodyIndex a, BodyIndex b, double gap, double 
 }
 
 /// Where the two touch at t: at the centroid of the contact patch, or, if that does not approach,
-/// at the nearest points (one corner of several within tolerance).
+/// at another place of what has parts, or at the nearest points (one corner of several within
+/// tolerance).
 Contact EventContacts::contact_at(BodyIndex a, BodyIndex b, Instant t, double bracket) const {
   const BodyState& state_a = motions_.now(a);
   const BodyState& state_b = motions_.now(b);
   const Overlap o =
       run_.detector.overlap(run_.model.shape(a), state_a.pose, run_.model.shape(b), state_b.pose);
   const Contact patch{o.point, o.normal, o.gap};
-  if (normal_velocity(patch, state_a, state_b) < 0.0 || bracket <= 0.0 ||
-      parts_all_over(a, b, patch.gap, bracket)) {
+  if (normal_velocity(patch, state_a, state_b) < 0.0) {
+    return patch;
+  }
+  if (const auto elsewhere = modes_.approaching_place(a, b)) {
+    return *elsewhere;
+  }
+  if (bracket <= 0.0 || parts_all_over(a, b, patch.gap, bracket)) {
     return patch;
   }
   const TimeOfImpact toi = run_.detector.time_of_impact(motions_.moving(a), motions_.moving(b),

@@ -122,7 +122,9 @@ bool EventModes::settle_once(std::span<const BodyIndex> seeds, Instant t, const 
   // What is stepped over hardly comes to lie flat from step to step.
   constexpr int tries_flat_every = 16;
   const bool steps_over = !options.unite && implicit_steps(found).first % tries_flat_every != 0;
-  if (options.not_flat || steps_over) {
+  // Whether a face of many pieces still carries what turns takes longer to tell than a step.
+  const bool by_pieces = !options.unite && pieces_turned(found, t) % tries_flat_every != 0;
+  if (options.not_flat || steps_over || by_pieces) {
     return settle_turning(seeds, t, adopt, options);
   }
   if (!found.hangs.empty()) {

@@ -2,6 +2,7 @@
 
 #include "core/contacts/contact_graph.hpp"
 #include "core/contacts/friction_modes.hpp"
+#include "core/contacts/shape_pieces.hpp"
 #include "core/contacts/touch.hpp"
 #include "core/schemes/event/event_accumulation.hpp"
 #include "core/schemes/event/event_motions.hpp"
@@ -19,6 +20,7 @@ inline namespace core {
 
 struct Clearance;
 struct TurningGroup;
+struct TurningPair;
 
 /// Contact that lasts among several bodies: who holds whom, since when, and until what happens.
 ///
@@ -71,6 +73,9 @@ class EventModes {
     const Shape& shape = run_.model.shape(i);
     return std::holds_alternative<Mesh>(shape) || std::holds_alternative<Compound>(shape);
   }
+  /// Of a pair in which one is a mesh or a compound: where pieces touch that approach, fastest;
+  /// nothing where none do.
+  [[nodiscard]] std::optional<Contact> approaching_place(BodyIndex a, BodyIndex b) const;
   /// Whether contact forces hold this free body.
   [[nodiscard]] bool holds(BodyIndex i) const {
     return run_.model.is_free(i) && (graph_.holds(i) || (hangs_and_touches(i) && holds_island(i)));
@@ -201,6 +206,34 @@ class EventModes {
   [[nodiscard]] bool settle_turning(std::span<const BodyIndex> seeds, Instant t, const Adopt& adopt,
                                     const SettleOptions& options);
   [[nodiscard]] std::string add_touches(Gathered& found, Instant t, Turning& turning) const;
+  /// Two convex pieces that touch, or nearly, and where they are in the frames of the bodies.
+  struct PiecePair {
+    const Shape* shape_a = nullptr;
+    Pose piece_a;
+    const Shape* shape_b = nullptr;
+    Pose piece_b;
+    ContactManifold manifold;
+    bool of_pieces = false;
+    Vector3 apart;  ///< see `TurningPair`
+    double apart_by = 0.0;
+  };
+  [[nodiscard]] std::string add_pair(const Gathered& found, std::size_t p, Turning& turning) const;
+  [[nodiscard]] std::optional<TurningPair> watched(const Gathered& found, std::size_t p,
+                                                   const PiecePair& of, const Pose& at_a,
+                                                   const Pose& at_b) const;
+  [[nodiscard]] std::string add_touches_of(const Gathered& found, std::size_t p,
+                                           const PiecePair& of, Turning& turning) const;
+  struct PlacedPiece {
+    const ShapePiece& piece;
+    Pose pose;  ///< in the world
+  };
+  [[nodiscard]] std::vector<ShapePiece> near_pieces(BodyIndex of, const Pose& at, BodyIndex other,
+                                                    const Pose& there, double within) const;
+  [[nodiscard]] ContactManifold touching_pieces(const PlacedPiece& a, const PlacedPiece& b,
+                                                double reach) const;
+  [[nodiscard]] double far_pieces(const Gathered& found, const GroupPatch& patch) const;
+  [[nodiscard]] static bool is_told(const Gathered& found, Touch touch, const TouchNow& now,
+                                    TurningGroup& group);
   [[nodiscard]] bool has_belts_on_faces(const Touch& touch, BodyIndex a, BodyIndex b) const;
   [[nodiscard]] std::string add_rims(const Gathered& found, Turning& turning) const;
   [[nodiscard]] static bool presses(const Gathered& found, const Turning& turning,
@@ -209,6 +242,7 @@ class EventModes {
   [[nodiscard]] int short_steps(const Gathered& found) const;
   [[nodiscard]] std::pair<int, int> implicit_steps(const Gathered& found) const;
   [[nodiscard]] bool goes_on_implicitly(const Gathered& found, Instant t) const;
+  [[nodiscard]] int pieces_turned(const Gathered& found, Instant t) const;
   [[nodiscard]] static bool has_joints(const Gathered& found);
   void find_forces(const Gathered& found, Turning& turning, Instant t);
   [[nodiscard]] Instant given_until(const Turning& turning) const;

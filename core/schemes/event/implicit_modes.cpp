@@ -194,7 +194,8 @@ void EventModes::keep_forces(const Gathered& found, const Turning& turning) {
   for (std::size_t k = 0; k < turning.group.start.touches.size(); ++k) {
     const Touch& touch = turning.group.start.touches[k];
     Patch* const patch = graph_.find(found.pairs[touch.pair].first, found.pairs[touch.pair].second);
-    if (patch != nullptr && touch.point < patch->force.size()) {
+    if (patch != nullptr) {
+      patch->force.resize(std::max(patch->force.size(), touch.point + 1), Vector3::Zero());
       patch->force[touch.point] = turning.mode.forces.force[k];
     }
   }

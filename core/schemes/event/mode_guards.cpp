@@ -247,9 +247,7 @@ std::string meets_elsewhere(const EventRun& run, const TouchingPair& pair, const
     }
   }
   if (meets <= at_once * run.epoch()) {
-    return run.names(pair.a, pair.b) +
-           " touch in one place and meet in another, which one pair cannot (parts of a mesh or "
-           "compound can be bodies of their own)";
+    return run.names(pair.a, pair.b) + " touch in one place and meet in another";
   }
   until = std::min(until, meets);
   return {};

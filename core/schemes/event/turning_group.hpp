@@ -50,5 +50,16 @@ struct EventModes::Turning {
   }
 };
 
+/// The states of those that are free, in order.
+inline std::vector<BodyState> free_states(const TurningGroup& group) {
+  std::vector<BodyState> states;
+  for (std::size_t i = 0; i < group.bodies.size(); ++i) {
+    if (group.inertia[i].mass > 0.0) {
+      states.push_back(group.start.states[i]);
+    }
+  }
+  return states;
+}
+
 }  // namespace core
 }  // namespace kairos

@@ -15,6 +15,13 @@ namespace {
 /// What touches, and has been made to touch less, is no further away than this times what touches.
 constexpr double nearly_touching = 1.25;
 
+/// What comes nearer than this strikes, m, of two bodies or of their pieces.
+double nearest_of(const TurningGroup& group, std::size_t p) {
+  return std::find_if(group.pairs.begin(), group.pairs.end(),
+                      [p](const TurningPair& pair) { return pair.of == p; })
+      ->nearest;
+}
+
 }  // namespace
 
 /// Gathers what touches, with gaps that can be held. Where that brings one nearer to what passes
@@ -85,7 +92,7 @@ std::vector<Clearance> EventModes::beside_touches(const Gathered& found,
     const Overlap o = run_.detector.overlap(run_.model.shape(a), found.states[patch.a].pose,
                                             run_.model.shape(b), found.states[patch.b].pose);
     if ((o.normal - patch.manifold.normal).norm() > same) {
-      const double nearest = group.pairs[p].nearest;
+      const double nearest = nearest_of(group, p);
       const double missing = found.passes[p] != 0    ? std::max(-o.gap, 0.0)
                              : o.gap < 0.5 * nearest ? nearest - o.gap
                                                      : 0.0;
@@ -98,9 +105,9 @@ std::vector<Clearance> EventModes::beside_touches(const Gathered& found,
 void EventModes::raise(Gathered& found, Turning& turning, Instant t, bool at_least) {
   TurningState& start = turning.group.start;
   const std::vector<char> all(start.touches.size(), 1);
-  std::vector<double> missing(turning.group.pairs.size(), 0.0);
+  std::vector<double> missing(turning.group.body_pairs, 0.0);
   for (Touch& touch : start.touches) {
-    const double nearest = turning.group.pairs[touch.pair].nearest;
+    const double nearest = turning.group.pairs[touch.watched].nearest;
     if (found.passes[touch.pair] != 0) {
       touch.gap = std::max(touch.gap, 0.0);
     } else if (touch.gap < 0.5 * nearest) {

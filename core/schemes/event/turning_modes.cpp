@@ -16,11 +16,6 @@ inline namespace core {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-/// What comes nearer than this part of what counts as touch strikes; gaps that are less than half
-/// of that are made as large.
-constexpr double least_gap = 1.0 / 16.0;
-/// Infinite friction: as this, so that what is hardly pressed any more may slide.
-constexpr double rough = 1e8;
 /// Steps that are shorter than this part of a frame are short: see `TurningLimits`.
 constexpr double short_step = 1e-4;
 /// The same on joints, among which a step costs several times as much.
@@ -30,16 +25,6 @@ constexpr double short_on_joints = 1e-3;
 constexpr int halvings_on_joints = 2;
 /// Steps are not shortened below this part of a frame to end where bodies still touch.
 constexpr double least_in_touch = 1e-9;
-
-std::vector<BodyState> free_states(const TurningGroup& group) {
-  std::vector<BodyState> states;
-  for (std::size_t i = 0; i < group.bodies.size(); ++i) {
-    if (group.inertia[i].mass > 0.0) {
-      states.push_back(group.start.states[i]);
-    }
-  }
-  return states;
-}
 
 }  // namespace
 
@@ -67,11 +52,6 @@ bool EventModes::settle_turning(std::span<const BodyIndex> seeds, Instant t, con
   Gathered found;
   Turning turning;
   if (!make_room(seeds, t, options, found, turning)) {
-    const bool of_parts = std::any_of(found.bodies.begin(), found.bodies.end(),
-                                      [&](BodyIndex i) { return has_parts(i); });
-    if (of_parts && !flat.empty()) {
-      why_not_ = flat + "; meshes and compounds are kept in touch at faces only";
-    }
     return false;
   }
   why_not_ = add_rims(found, turning);
@@ -214,119 +194,6 @@ void EventModes::find_forces(const Gathered& found, Turning& turning, Instant t)
   if (!turning.mode.refusal.empty()) {
     turning.group = all;
   }
-}
-
-/// The touches that are at rest along their normals, and the planes between bodies; why there are
-/// none.
-std::string EventModes::add_touches(Gathered& found, Instant t, Turning& turning) const {
-  TurningGroup& group = turning.group;
-  group.start.bodies = found.group.bodies;
-  group.start.states = found.states;
-  group.start.loads = found.group.loads;
-  group.start.radius = found.group.radius;
-  group.bodies = found.bodies;
-  group.mechanisms = found.mechanisms;
-  for (std::size_t k = 0; k < found.bodies.size(); ++k) {
-    if (run_.model.mobility(found.bodies[k]) == Mobility::driven) {
-      group.drivers.push_back({k, motions_.driven_from(found.bodies[k], t)});
-      const Motion& motion = group.drivers.back().motion;
-      group.start.states[k] = {motion.pose(t - motion.start), motion.twist(t - motion.start)};
-      group.start.loads[k] = accelerations_of(motion, t);
-    }
-  }
-  for (const BodyIndex i : found.bodies) {
-    const bool free = run_.model.is_free(i);
-    group.inertia.push_back(free ? run_.model.inertia(i) : BodyInertia{});
-    group.constant_force.push_back(free ? motions_.steady_force(i) : Vector3(Vector3::Zero()));
-    const Island* const island = free ? &run_.model.islands()[run_.model.island_of(i)] : nullptr;
-    group.forces.push_back(island != nullptr && !hangs_together(*island)
-                               ? island->forces
-                               : std::vector<const Force*>());
-  }
-  for (std::size_t p = 0; p < found.pairs.size(); ++p) {
-    const auto [a, b] = found.pairs[p];
-    const GroupPatch& patch = found.group.patches[p];
-    const ContactManifold& m = patch.manifold;
-    auto corners_a = extremes_of(run_.model.shape(a));
-    auto corners_b = extremes_of(run_.model.shape(b));
-    const Pose& at_a = found.states[patch.a].pose;
-    const Pose& at_b = found.states[patch.b].pose;
-    if (!corners_a || !corners_b) {
-      return fmt::format("{} touch, one turns, and one is a mesh or a compound", run_.names(a, b));
-    }
-    TurningPair pair{patch.a,
-                     patch.b,
-                     std::move(*corners_a),
-                     std::move(*corners_b),
-                     {},
-                     {},
-                     least_gap * predictor_.touching_gap(a, b),
-                     &run_.model.shape(a),
-                     &run_.model.shape(b)};
-    const Vector3& middle = m.points[0].position;
-    const Vector3 half = 0.5 * m.points[0].gap * m.normal;
-    if (m.face_of_a && found.passes[p] == 0) {
-      pair.planes_a.push_back(face_feature(run_.model.shape(a), at_a.to_body(middle - half),
-                                           at_a.orientation.conjugate() * m.normal));
-    }
-    if (m.face_of_b && found.passes[p] == 0) {
-      pair.planes_b.push_back(face_feature(run_.model.shape(b), at_b.to_body(middle + half),
-                                           at_b.orientation.conjugate() * -m.normal));
-    }
-    for (std::size_t k = 0; k < m.size; ++k) {
-      auto touch = touch_at(m, k, run_.model.shape(a), at_a, run_.model.shape(b), at_b);
-      if (!touch) {
-        return fmt::format("{} touch where no face, edge and corner is known to", run_.names(a, b));
-      }
-      touch->a = patch.a;
-      touch->b = patch.b;
-      touch->friction = std::min(patch.friction, rough);
-      touch->rough = std::isinf(patch.friction);
-      touch->rest_speed = patch.rest_speed;
-      touch->pair = p;
-      touch->point = k;
-      touch->belt = patch.drift;
-      if (!has_belts_on_faces(*touch, a, b)) {
-        return "a body turns at an edge of a belt";
-      }
-      const double gap = look_at(*touch, found.states[patch.a], found.states[patch.b]).gap;
-      touch->gap = gap;
-      group.start.touches.push_back(*touch);
-    }
-    pair.apart = run_.detector.overlap(run_.model.shape(a), at_a, run_.model.shape(b), at_b).normal;
-    group.pairs.push_back(std::move(pair));
-  }
-  if (!group.mechanisms.empty()) {
-    turning.driven = put_velocities_onto_joints(group.mechanisms, t, group.start.states);
-    TurningState start = turning_state(group, t, free_states(group));
-    start.touches = std::move(group.start.touches);
-    group.start = std::move(start);
-  }
-  return {};
-}
-
-/// Whether belts of a touch are on faces of what never moves: their velocity is then along the
-/// surface, and constant.
-bool EventModes::has_belts_on_faces(const Touch& touch, BodyIndex a, BodyIndex b) const {
-  const auto fits = [&](BodyIndex i, const TouchFeature& feature) {
-    return belt(i, touch.normal).isZero(0.0) ||
-           (run_.model.mobility(i) == Mobility::fixed && feature.kind == TouchFeature::Kind::plane);
-  };
-  return touch.belt.isZero(0.0) || (fits(a, touch.on_a) && fits(b, touch.on_b));
-}
-
-/// Where what is touched ends; why that is not known.
-std::string EventModes::add_rims(const Gathered& found, Turning& turning) const {
-  for (const Touch& touch : turning.group.start.touches) {
-    const BodyIndex a = found.bodies[touch.a];
-    const BodyIndex b = found.bodies[touch.b];
-    auto rims = rims_of(touch, run_.model.shape(a), run_.model.shape(b));
-    if (!rims) {
-      return fmt::format("{} touch, one turns, and what it is on may end", run_.names(a, b));
-    }
-    turning.group.rims.push_back(std::move(*rims));
-  }
-  return {};
 }
 
 /// What parts slower than a hop worth the name is taken for rest. Where that contradicts itself it

@@ -18,6 +18,18 @@ bool EventModes::has_turned(std::span<const BodyIndex> bodies) const {
                      [&](BodyIndex i) { return has_turned_[i].once; });
 }
 
+/// Of a group in which meshes or compounds turn, how often something has in the frame of `t`.
+int EventModes::pieces_turned(const Gathered& found, Instant t) const {
+  const double frame = std::floor(t.seconds / run_.mean_frame);
+  int most = 0;
+  bool of_pieces = false;
+  for (const BodyIndex i : found.bodies) {
+    of_pieces = of_pieces || has_parts(i);
+    most = has_turned_[i].frame == frame ? std::max(most, has_turned_[i].steps) : most;
+  }
+  return of_pieces ? most : 0;
+}
+
 /// Why these are not even tried: there are too many of them, or they have had their share of work.
 std::string EventModes::why_not_turn(const Gathered& found, Instant t) const {
   const auto free = std::count_if(found.bodies.begin(), found.bodies.end(),
