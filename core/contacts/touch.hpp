@@ -45,8 +45,8 @@ struct Touch {
   Vector3 belt = Vector3::Zero();
   /// Features may be those of pieces of the bodies, in frames of their own: where these are.
   bool of_pieces = false;
-  Pose piece_a;
-  Pose piece_b;
+  Pose piece_a{};
+  Pose piece_b{};
   std::size_t watched = 0;  ///< of the group's `TurningPair`s
 };
 

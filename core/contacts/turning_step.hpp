@@ -31,8 +31,8 @@ struct TurningPair {
   Vector3 apart = Vector3::Zero();
   /// Where both have parts, a pair of these: features are in their frames.
   bool of_pieces = false;
-  Pose piece_a;
-  Pose piece_b;
+  Pose piece_a{};
+  Pose piece_b{};
   double apart_by = 0.0;  ///< how far apart pieces are at least, m
   std::size_t of = 0;     ///< as `Touch::pair` counts
 };
