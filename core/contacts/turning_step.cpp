@@ -625,8 +625,7 @@ class Step {
         Eigen::MatrixXd::Zero(nodes, static_cast<Eigen::Index>(group_.bodies.size()));
     Eigen::MatrixXd leaks = of_body;
     Eigen::MatrixXd of_driver = of_body;
-    Eigen::MatrixXd of_pair =
-        Eigen::MatrixXd::Zero(nodes, static_cast<Eigen::Index>(group_.body_pairs));
+    Eigen::MatrixXd of_pair = Eigen::MatrixXd::Zero(nodes, body_pairs());
     Eigen::MatrixXd of_belt = of_pair;
     Eigen::MatrixXd of_surface = of_pair;
     for (int j = 0; j < nodes; ++j) {
@@ -658,6 +657,15 @@ class Step {
     if (free_.size() == 1) {
       leak_of_one();
     }
+  }
+
+  /// How many pairs of bodies touch.
+  [[nodiscard]] Eigen::Index body_pairs() const {
+    std::size_t count = 0;
+    for (const TurningPair& pair : group_.pairs) {
+      count = std::max(count, pair.of + 1);
+    }
+    return static_cast<Eigen::Index>(count);
   }
 
   /// Of one free body: the difference of what is told, so that it closes the ledger to the last

@@ -33,8 +33,10 @@ struct TurningPair {
   bool of_pieces = false;
   Pose piece_a{};
   Pose piece_b{};
-  double apart_by = 0.0;  ///< how far apart pieces are at least, m
-  std::size_t of = 0;     ///< as `Touch::pair` counts
+  double apart_by = 0.0;    ///< how far apart pieces are at least, m
+  std::size_t of = 0;       ///< as `Touch::pair` counts
+  std::size_t index_a = 0;  ///< which of the pieces of a
+  std::size_t index_b = 0;
 };
 
 /// Pieces of two bodies that nothing watches: as far apart as this at least, m.
@@ -61,7 +63,6 @@ struct TurningGroup {
   std::vector<GroupMechanism> mechanisms;            ///< what hangs together by joints
   std::vector<GroupDriver> drivers;                  ///< what is driven
   std::vector<TurningPair> pairs;                    ///< as `Touch::watched` counts
-  std::size_t body_pairs = 0;                        ///< as `Touch::pair` counts
   std::vector<std::shared_ptr<const Shape>> pieces;  ///< that pairs refer to
   std::vector<Unwatched> unwatched;
   /// Touches that are others as seen from a piece beside: of those with the same pair and point.

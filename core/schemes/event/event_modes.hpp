@@ -216,6 +216,8 @@ class EventModes {
     bool of_pieces = false;
     Vector3 apart;  ///< see `TurningPair`
     double apart_by = 0.0;
+    std::size_t index_a = 0;
+    std::size_t index_b = 0;
   };
   [[nodiscard]] std::string add_pair(const Gathered& found, std::size_t p, Turning& turning) const;
   [[nodiscard]] std::optional<TurningPair> watched(const Gathered& found, std::size_t p,
@@ -231,6 +233,7 @@ class EventModes {
                                                     const Pose& there, double within) const;
   [[nodiscard]] ContactManifold touching_pieces(const PlacedPiece& a, const PlacedPiece& b,
                                                 double reach) const;
+  static void share_faces(std::size_t p, std::size_t first, TurningGroup& group);
   [[nodiscard]] double far_pieces(const Gathered& found, const GroupPatch& patch) const;
   [[nodiscard]] static bool is_told(const Gathered& found, Touch touch, const TouchNow& now,
                                     TurningGroup& group);

@@ -105,7 +105,7 @@ std::vector<Clearance> EventModes::beside_touches(const Gathered& found,
 void EventModes::raise(Gathered& found, Turning& turning, Instant t, bool at_least) {
   TurningState& start = turning.group.start;
   const std::vector<char> all(start.touches.size(), 1);
-  std::vector<double> missing(turning.group.body_pairs, 0.0);
+  std::vector<double> missing(found.pairs.size(), 0.0);
   for (Touch& touch : start.touches) {
     const double nearest = turning.group.pairs[touch.watched].nearest;
     if (found.passes[touch.pair] != 0) {

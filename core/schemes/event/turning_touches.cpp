@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -55,7 +56,6 @@ std::string EventModes::add_touches(Gathered& found, Instant t, Turning& turning
                                ? island->forces
                                : std::vector<const Force*>());
   }
-  group.body_pairs = found.pairs.size();
   for (std::size_t p = 0; p < found.pairs.size(); ++p) {
     if (std::string why = add_pair(found, p, turning); !why.empty()) {
       return why;
@@ -83,8 +83,8 @@ std::string EventModes::add_pair(const Gathered& found, std::size_t p, Turning& 
   const bool of_pieces = has_pieces(shape_a) || has_pieces(shape_b);
   if (!of_pieces) {
     const Vector3 apart = run_.detector.overlap(shape_a, at_a, shape_b, at_b).normal;
-    return add_touches_of(found, p, {&shape_a, {}, &shape_b, {}, patch.manifold, false, apart, 0.0},
-                          turning);
+    return add_touches_of(
+        found, p, {&shape_a, {}, &shape_b, {}, patch.manifold, false, apart, 0.0, 0, 0}, turning);
   }
   // Others are too far away to come near within a step.
   const double within = far_pieces(found, patch);
@@ -93,10 +93,14 @@ std::string EventModes::add_pair(const Gathered& found, std::size_t p, Turning& 
     reach = std::max(reach, patch.manifold.points[k].gap);
   }
   group.unwatched.push_back({patch.a, patch.b, within});
+  const std::size_t first = group.pairs.size();
   const std::vector<ShapePiece> pieces_b = near_pieces(b, at_b, a, at_a, within);
   bool touches = false;
-  for (const ShapePiece& of_a : near_pieces(a, at_a, b, at_b, within)) {
-    for (const ShapePiece& of_b : pieces_b) {
+  const std::vector<ShapePiece> pieces_a = near_pieces(a, at_a, b, at_b, within);
+  for (std::size_t i = 0; i < pieces_a.size(); ++i) {
+    for (std::size_t j = 0; j < pieces_b.size(); ++j) {
+      const ShapePiece& of_a = pieces_a[i];
+      const ShapePiece& of_b = pieces_b[j];
       const Pose piece_a = in_world(at_a, of_a.pose);
       const Pose piece_b = in_world(at_b, of_b.pose);
       const ContactManifold manifold = touching_pieces({of_a, piece_a}, {of_b, piece_b}, reach);
@@ -104,7 +108,7 @@ std::string EventModes::add_pair(const Gathered& found, std::size_t p, Turning& 
         return group.pieces.emplace_back(std::make_shared<const Shape>(shape)).get();
       };
       PiecePair pair{
-          keep(of_a.shape), of_a.pose, keep(of_b.shape), of_b.pose, manifold, true, {}, 0.0};
+          keep(of_a.shape), of_a.pose, keep(of_b.shape), of_b.pose, manifold, true, {}, 0.0, i, j};
       const Overlap o = run_.detector.overlap(of_a.asked, piece_a, of_b.asked, piece_b);
       pair.apart = o.normal;
       pair.apart_by = manifold.size == 0 ? o.gap : 0.0;
@@ -114,6 +118,7 @@ std::string EventModes::add_pair(const Gathered& found, std::size_t p, Turning& 
       touches = touches || manifold.size > 0;
     }
   }
+  share_faces(p, first, group);
   return touches ? std::string()
                  : fmt::format("{} touch where no piece of theirs is known to", run_.names(a, b));
 }
@@ -220,7 +225,9 @@ std::optional<TurningPair> EventModes::watched(const Gathered& found, std::size_
                    of.piece_a,
                    of.piece_b,
                    of.apart_by,
-                   p};
+                   p,
+                   of.index_a,
+                   of.index_b};
   if (m.size > 0 && found.passes[p] == 0) {
     const Vector3& middle = m.points[0].position;
     const Vector3 half = 0.5 * m.points[0].gap * m.normal;
@@ -296,6 +303,50 @@ std::string EventModes::add_touches_of(const Gathered& found, std::size_t p, con
   }
   group.pairs.push_back(std::move(*pair));
   return {};
+}
+
+/// What is held on a face is held on those of other pieces in the same plane, too. `first`: of the
+/// pairs of pieces of the pair p.
+void EventModes::share_faces(std::size_t p, std::size_t first, TurningGroup& group) {
+  constexpr double same = 1e-13;  // a small part of the least gap that is held
+  const auto plane_of = [](const Touch& touch, bool of_a) {
+    const TouchFeature& f = of_a ? touch.on_a : touch.on_b;
+    const Pose& piece = of_a ? touch.piece_a : touch.piece_b;
+    return TouchFeature{f.kind, piece.to_world(f.at), piece.orientation * f.direction, f.radius};
+  };
+  for (std::size_t q = first; q < group.pairs.size(); ++q) {
+    TurningPair& pair = group.pairs[q];
+    for (const bool of_a : {true, false}) {
+      for (const TouchFeature& face : faces_of(of_a ? *pair.shape_a : *pair.shape_b)) {
+        Touch as{.on_a = face, .on_b = face, .piece_a = pair.piece_a, .piece_b = pair.piece_b};
+        const TouchFeature mine = plane_of(as, of_a);
+        bool shares = false;
+        for (const Touch& touch : group.start.touches) {
+          const TurningPair& other = group.pairs[touch.watched];
+          const TouchFeature plane = plane_of(touch, of_a);
+          const bool one_piece =
+              of_a ? pair.index_b == other.index_b : pair.index_a == other.index_a;
+          const double size = group.start.radius[of_a ? touch.a : touch.b];
+          if (touch.pair != p || touch.watched == q || !one_piece ||
+              plane.kind != TouchFeature::Kind::plane ||
+              (plane.direction - mine.direction).norm() > same ||
+              std::abs(plane.direction.dot(plane.at - mine.at)) > same * size) {
+            continue;
+          }
+          Touch shared = touch;
+          (of_a ? shared.on_a : shared.on_b) = face;
+          (of_a ? shared.piece_a : shared.piece_b) = of_a ? pair.piece_a : pair.piece_b;
+          shared.watched = q;
+          group.shared.push_back(shared);
+          shares = true;
+        }
+        auto& planes = of_a ? pair.planes_a : pair.planes_b;
+        if (shares && planes.empty()) {
+          planes.push_back(face);
+        }
+      }
+    }
+  }
 }
 
 /// Whether pieces beside these touch at the same place, with one normal. With features of the same
