@@ -156,6 +156,8 @@ class Watcher {
   }
 
  private:
+  struct Placed;
+
   [[nodiscard]] const Pose& piece(bool of_a) const {
     return of_a ? watch_.pair.piece_a : watch_.pair.piece_b;
   }
@@ -212,6 +214,7 @@ class Watcher {
     }
     const Placed at(*this, 0.0);
     double best = 0.0;
+    double best_across = 0.0;  // two edges, where these count apart
     const auto is_best = [&](const TouchFeature* face, bool of_a, const Touch* edges) {
       const Candidate c{.corners_a = all_of(pair.corners_a),
                         .corners_b = all_of(pair.corners_b),
@@ -219,10 +222,12 @@ class Watcher {
                         .of_a = of_a,
                         .touch = edges};
       const double h = height(c, at);
-      best = std::max(best, h);
-      return h == best && h > 0.0;
+      double& most = pair.of_pieces && edges != nullptr ? best_across : best;
+      most = std::max(most, h);
+      return h == most && h > 0.0;
     };
     enum class Spare { none, face_of_a, face_of_b, edges } found = Spare::none;
+    bool across = false;
     for (const bool of_a : {true, false}) {
       for (const TouchFeature& face : faces_of(of_a ? *pair.shape_a : *pair.shape_b)) {
         if (is_best(&face, of_a, nullptr)) {
@@ -231,15 +236,18 @@ class Watcher {
         }
       }
     }
-    for (const Touch& edges : crossing_edges(at.piece_a, at.piece_b)) {
+    for (const Touch& edges : crossing_edges(at)) {
       if (is_best(nullptr, false, &edges)) {
         spare_edges_ = edges;
-        found = Spare::edges;
+        across = true;
+        found = pair.of_pieces ? found : Spare::edges;
       }
     }
-    if (found == Spare::edges) {
+    // Of a piece a corner may go below the plane of a face beside which it is.
+    if (across && (found == Spare::edges || pair.of_pieces)) {
       add_touch(spare_edges_, false);
-    } else if (found != Spare::none) {
+    }
+    if (found == Spare::face_of_a || found == Spare::face_of_b) {
       add_plane(spare_face_, found == Spare::face_of_a, false);
     }
     if (!pair.apart.isZero(0.0)) {
@@ -261,9 +269,14 @@ class Watcher {
     }
   }
 
-  /// Edges of both whose common perpendicular leads out of both, so that it may separate them, and
-  /// that stay across each other: how fast it turns is bounded by twice what it is at first.
-  [[nodiscard]] std::vector<Touch> crossing_edges(const Pose& a, const Pose& b) const {
+  /// Edges, or round sides, of both whose common perpendicular leads out of both, so that it may
+  /// separate them, and that stay across each other: how fast it turns is bounded by twice what it
+  /// is at first.
+  [[nodiscard]] std::vector<Touch> crossing_edges(const Placed& at) const {
+    const Pose& a = at.piece_a;
+    const Pose& b = at.piece_b;
+    const Vector3 within_a = watch_.pair.of_pieces ? middle(at.corners_a) : a.position;
+    const Vector3 within_b = watch_.pair.of_pieces ? middle(at.corners_b) : b.position;
     constexpr double nearly_parallel = 1e-6;
     const double least_sine =
         std::max(nearly_parallel, 2.0 * (a_.turning + b_.turning) * duration_);
@@ -280,7 +293,9 @@ class Watcher {
           continue;
         }
         const Vector3 n = (across.dot(at_b - at_a) > 0.0 ? 1.0 : -1.0) * across.normalized();
-        if (n.dot(at_a - a.position) > 0.0 && n.dot(b.position - at_b) > 0.0) {
+        const bool out_of_a = edge_a.radius > 0.0 || n.dot(at_a - within_a) > 0.0;
+        const bool out_of_b = edge_b.radius > 0.0 || n.dot(within_b - at_b) > 0.0;
+        if (out_of_a && out_of_b) {
           found.push_back({.on_a = edge_a,
                            .on_b = edge_b,
                            .normal = n,
@@ -403,6 +418,15 @@ class Watcher {
                                             : Vector3(Vector3::Zero())};
     }
   };
+
+  /// A triangle of a mesh is not about the origin of its frame.
+  [[nodiscard]] static Vector3 middle(const std::vector<Placed::Extreme>& corners) {
+    Vector3 sum = Vector3::Zero();
+    for (const Placed::Extreme& corner : corners) {
+      sum += corner.at;
+    }
+    return sum / static_cast<double>(corners.size());
+  }
 
   [[nodiscard]] static std::vector<std::size_t> all_of(const std::vector<TouchFeature>& corners) {
     std::vector<std::size_t> all(corners.size());

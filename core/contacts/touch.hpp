@@ -84,7 +84,8 @@ struct TouchNow {
 /// plane; empty for others.
 [[nodiscard]] std::vector<TouchFeature> faces_of(const Shape& shape);
 
-/// The edges of a box or of a hull without rounding, each a line; empty for others.
+/// The edges of a box or of a hull without rounding, each a line; the round side of a capsule or a
+/// cylinder; empty for others.
 [[nodiscard]] std::vector<TouchFeature> edges_of(const Shape& shape);
 
 /// The face of a shape that looks `outward`, unit, near a point of the surface (body frame): its

@@ -360,6 +360,9 @@ std::vector<TouchFeature> faces_of(const Shape& shape) {
 
 std::vector<TouchFeature> edges_of(const Shape& shape) {
   std::vector<TouchFeature> edges;
+  if (const auto radius = radius_of_side(shape)) {
+    edges.push_back({Kind::line, Vector3::Zero(), Vector3::UnitY(), *radius});
+  }
   if (const auto c = polytope_corners(shape); c && !(c->rounding > 0.0)) {
     for (const auto& [i, j] : c->edges) {
       const Vector3& at = c->vertices[i];

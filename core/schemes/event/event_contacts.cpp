@@ -280,25 +280,25 @@ void EventContacts::touch(BodyIndex a, BodyIndex b, const Contact& contact, Inst
   relaunch(a, b, t);
 }
 
-/// Whether all that is as near as a patch of this gap, or comes so within the bracket, draws away:
-/// of convex bodies, which are near at one place only.
+/// Whether all that is as near as a patch of this gap, or comes so within the bracket, draws away.
 bool EventContacts::parts_all_over(BodyIndex a, BodyIndex b, double gap, double bracket) const {
   const BodyState& state_a = motions_.now(a);
   const BodyState& state_b = motions_.now(b);
   const Shape& shape_a = run_.model.shape(a);
   const Shape& shape_b = run_.model.shape(b);
-  if (modes_.has_parts(a) || modes_.has_parts(b)) {
-    return false;
-  }
   const auto speed = [](const BodyState& state, const Shape& shape) {
     const double turning = state.twist.angular.norm();  // a half-space that turns is nowhere slow
     return state.twist.linear.norm() + (turning > 0.0 ? turning * bounding_radius(shape) : 0.0);
   };
   const double fastest = speed(state_a, shape_a) + speed(state_b, shape_b);
   const double reach = 2.0 * (std::max(gap, predictor_.touching_gap(a, b)) + fastest * bracket);
+  constexpr double still = 1e-9;  // what draws away slower than this part may as well approach
+  if (modes_.has_parts(a) || modes_.has_parts(b)) {
+    const auto least = modes_.least_parting(a, b, reach);
+    return least && normal_velocity(*least, state_a, state_b) > still * fastest;
+  }
   const ContactManifold near =
       run_.detector.manifold(shape_a, state_a.pose, shape_b, state_b.pose, reach);
-  constexpr double still = 1e-9;  // what draws away slower than this part may as well approach
   for (std::size_t k = 0; k < near.size; ++k) {
     const Contact point{near.points[k].position, near.normal, near.points[k].gap};
     if (!(normal_velocity(point, state_a, state_b) > still * fastest)) {
@@ -320,8 +320,11 @@ Contact EventContacts::contact_at(BodyIndex a, BodyIndex b, Instant t, double br
   if (normal_velocity(patch, state_a, state_b) < 0.0) {
     return patch;
   }
-  if (const auto elsewhere = modes_.approaching_place(a, b)) {
-    return *elsewhere;
+  if (modes_.has_parts(a) || modes_.has_parts(b)) {
+    const auto elsewhere = modes_.least_parting(a, b, predictor_.touching_gap(a, b));
+    if (elsewhere && normal_velocity(*elsewhere, state_a, state_b) < 0.0) {
+      return *elsewhere;
+    }
   }
   if (bracket <= 0.0 || parts_all_over(a, b, patch.gap, bracket)) {
     return patch;

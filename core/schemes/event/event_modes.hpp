@@ -73,9 +73,9 @@ class EventModes {
     const Shape& shape = run_.model.shape(i);
     return std::holds_alternative<Mesh>(shape) || std::holds_alternative<Compound>(shape);
   }
-  /// Of a pair in which one is a mesh or a compound: where pieces touch that approach, fastest;
-  /// nothing where none do.
-  [[nodiscard]] std::optional<Contact> approaching_place(BodyIndex a, BodyIndex b) const;
+  /// Of a pair in which one is a mesh or a compound: of the places where pieces are nearer than
+  /// `reach`, m, the one that approaches fastest, or parts slowest; nothing where none are.
+  [[nodiscard]] std::optional<Contact> least_parting(BodyIndex a, BodyIndex b, double reach) const;
   /// Whether contact forces hold this free body.
   [[nodiscard]] bool holds(BodyIndex i) const {
     return run_.model.is_free(i) && (graph_.holds(i) || (hangs_and_touches(i) && holds_island(i)));

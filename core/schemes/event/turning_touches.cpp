@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -159,25 +160,23 @@ ContactManifold EventModes::touching_pieces(const PlacedPiece& a, const PlacedPi
   return manifold;
 }
 
-std::optional<Contact> EventModes::approaching_place(BodyIndex a, BodyIndex b) const {
-  if (!has_parts(a) && !has_parts(b)) {
-    return std::nullopt;
-  }
+std::optional<Contact> EventModes::least_parting(BodyIndex a, BodyIndex b, double reach) const {
   const BodyState& at_a = motions_.now(a);
   const BodyState& at_b = motions_.now(b);
-  const double reach = predictor_.touching_gap(a, b);
   const auto pieces_b = near_pieces(b, at_b.pose, a, at_a.pose, reach);
   std::optional<Contact> found;
-  double fastest = 0.0;
+  double least = std::numeric_limits<double>::infinity();
   for (const ShapePiece& of_a : near_pieces(a, at_a.pose, b, at_b.pose, reach)) {
     for (const ShapePiece& of_b : pieces_b) {
-      const Overlap o = run_.detector.overlap(of_a.asked, in_world(at_a.pose, of_a.pose),
-                                              of_b.asked, in_world(at_b.pose, of_b.pose));
-      const Contact contact{o.point, o.normal, o.gap};
-      const double rate = o.gap <= reach ? normal_velocity(contact, at_a, at_b) : 0.0;
-      if (rate < fastest) {
-        fastest = rate;
-        found = contact;
+      const ContactManifold m = touching_pieces({of_a, in_world(at_a.pose, of_a.pose)},
+                                                {of_b, in_world(at_b.pose, of_b.pose)}, reach);
+      for (std::size_t k = 0; k < m.size; ++k) {
+        const Contact contact{m.points[k].position, m.normal, m.points[k].gap};
+        const double rate = normal_velocity(contact, at_a, at_b);
+        if (rate < least) {
+          least = rate;
+          found = contact;
+        }
       }
     }
   }
