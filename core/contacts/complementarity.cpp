@@ -90,7 +90,7 @@ Complementarity solve_complementarity(const MatrixXd& W, const VectorXd& q, doub
       break;
     }
     pressed.push_back(enters);
-    while (answer.solves < most) {
+    while (!pressed.empty() && answer.solves < most) {
       const VectorXd next = on_rows(W, q, pressed);
       ++answer.solves;
       // Goes towards the solution until some row would pull.

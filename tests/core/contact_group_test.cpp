@@ -241,6 +241,16 @@ TEST_CASE("complementarity holds in long double on random groups", "[contacts]")
   }
 }
 
+// Roundoff may leave less than nothing of a matrix that is none: the only row that presses would
+// have to pull. Nothing was left to solve for then, and that was a crash.
+TEST_CASE("complementarity: where no row can press there is no solution", "[contacts]") {
+  Eigen::MatrixXd W(2, 2);
+  W << -1e-17, 0.0, 0.0, -2e-17;
+  const Complementarity answer = solve_complementarity(W, Eigen::Vector2d(-1.0, -0.5));
+  CHECK_FALSE(answer.solved);
+  CHECK(answer.x.allFinite());
+}
+
 TEST_CASE("a cradle in touch: reflections hand on, moreau shares", "[contacts][reference]") {
   Balls balls = cradle();
   REQUIRE(reflected_group(balls.system, elastic(balls), balls.v).size() == 2);
