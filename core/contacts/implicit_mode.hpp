@@ -12,8 +12,8 @@ inline namespace core {
 /// so slow that its direction turns within what a step can tell. No normal rate at the end is below
 /// 0, what presses does not part, and each impulse is within its cone, against what still slides at
 /// the end [Jourdan1998]: touch by touch, again and again, from `warm` on (forces by touch, N;
-/// empty: from none). Velocities at the start keep no approach. Of first order in
-/// h, and of second with what was missed.
+/// empty: from none). Velocities at the start keep no approach. Of first order in h, and of second
+/// with what was missed.
 /// @param last_resort  where sweeps do not settle, what is rough is held along the surfaces by what
 ///                     does not press it, too, unless it parts
 /// @param halvings  the most sweeps are halved so many times

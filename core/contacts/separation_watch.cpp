@@ -1,5 +1,7 @@
 #include "core/contacts/separation_watch.hpp"
 
+#include "core/contacts/shape_pieces.hpp"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -399,18 +401,14 @@ class Watcher {
     Placed(const Watcher& of, double s)
         : a{of.watch_.motion_a.pose(s), {}},
           b{of.watch_.motion_b.pose(s), {}},
-          piece_a(composed(a.pose, of.watch_.pair.piece_a, of.watch_.pair.of_pieces)),
-          piece_b(composed(b.pose, of.watch_.pair.piece_b, of.watch_.pair.of_pieces)) {
+          piece_a(of.watch_.pair.of_pieces ? in_world(a.pose, of.watch_.pair.piece_a) : a.pose),
+          piece_b(of.watch_.pair.of_pieces ? in_world(b.pose, of.watch_.pair.piece_b) : b.pose) {
       for (const TouchFeature& corner : of.watch_.pair.corners_a) {
         corners_a.push_back(placed(corner, piece_a));
       }
       for (const TouchFeature& corner : of.watch_.pair.corners_b) {
         corners_b.push_back(placed(corner, piece_b));
       }
-    }
-    static Pose composed(const Pose& body, const Pose& piece, bool of_pieces) {
-      return of_pieces ? Pose{body.to_world(piece.position), body.orientation * piece.orientation}
-                       : body;
     }
     static Extreme placed(const TouchFeature& corner, const Pose& pose) {
       return {pose.to_world(corner.at), corner.kind == Kind::rim

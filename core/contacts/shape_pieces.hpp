@@ -22,6 +22,11 @@ struct ShapePiece {
 [[nodiscard]] std::vector<ShapePiece> pieces_of(const Shape& shape, bool over_plane,
                                                 const Vector3& near, double within);
 
+/// Where a piece of a body is in the world.
+[[nodiscard]] inline Pose in_world(const Pose& body, const Pose& piece) {
+  return {body.to_world(piece.position), body.orientation * piece.orientation};
+}
+
 /// Whether a shape has pieces: a mesh or a compound.
 [[nodiscard]] bool has_pieces(const Shape& shape);
 

@@ -182,6 +182,6 @@ spacing = [0.2, 0.2]
         "shape = \"compound\"\n[[body.part]]\nhalf_extents = [0.15, 0.03, 0.03]\n"
         "[[body.part]]\nhalf_extents = [0.03, 0.1, 0.03]\nposition = [-0.12, 0.12, 0]\n"}) {
     INFO(shape);
-    (void)run(hills + "[[body]]\nname = \"thing\"\n" + at + shape, 1e-6);
+    (void)run(fmt::format("{}[[body]]\nname = \"thing\"\n{}{}", hills, at, shape), 1e-6);
   }
 }

@@ -69,10 +69,7 @@ class EventModes {
   [[nodiscard]] const std::string& why_not() const { return why_not_; }
 
   /// Whether it is of parts that others may touch at several places: a mesh or a compound.
-  [[nodiscard]] bool has_parts(BodyIndex i) const {
-    const Shape& shape = run_.model.shape(i);
-    return std::holds_alternative<Mesh>(shape) || std::holds_alternative<Compound>(shape);
-  }
+  [[nodiscard]] bool has_parts(BodyIndex i) const { return has_pieces(run_.model.shape(i)); }
   /// Of a pair in which one is a mesh or a compound: of the places where pieces are nearer than
   /// `reach`, m, the one that approaches fastest, or parts slowest; nothing where none are.
   [[nodiscard]] std::optional<Contact> least_parting(BodyIndex a, BodyIndex b, double reach) const;
@@ -220,9 +217,8 @@ class EventModes {
     std::size_t index_b = 0;
   };
   [[nodiscard]] std::string add_pair(const Gathered& found, std::size_t p, Turning& turning) const;
-  [[nodiscard]] std::optional<TurningPair> watched(const Gathered& found, std::size_t p,
-                                                   const PiecePair& of, const Pose& at_a,
-                                                   const Pose& at_b) const;
+  [[nodiscard]] TurningPair watched(const Gathered& found, std::size_t p, const PiecePair& of,
+                                    const Pose& at_a, const Pose& at_b) const;
   [[nodiscard]] std::string add_touches_of(const Gathered& found, std::size_t p,
                                            const PiecePair& of, Turning& turning) const;
   struct PlacedPiece {

@@ -23,11 +23,6 @@ constexpr double least_gap = 1.0 / 16.0;
 /// Infinite friction: as this, so that what is hardly pressed any more may slide.
 constexpr double rough = 1e8;
 
-/// Where a piece of a body is.
-Pose in_world(const Pose& body, const Pose& piece) {
-  return {body.to_world(piece.position), body.orientation * piece.orientation};
-}
-
 }  // namespace
 
 /// The touches that are at rest along their normals, and the planes between bodies; why there are
@@ -198,22 +193,16 @@ double EventModes::far_pieces(const Gathered& found, const GroupPatch& patch) co
   return moves;
 }
 
-/// What watches two convex pieces; nothing where it is not known what their extremes are.
-std::optional<TurningPair> EventModes::watched(const Gathered& found, std::size_t p,
-                                               const PiecePair& of, const Pose& at_a,
-                                               const Pose& at_b) const {
+/// What watches two convex pieces.
+TurningPair EventModes::watched(const Gathered& found, std::size_t p, const PiecePair& of,
+                                const Pose& at_a, const Pose& at_b) const {
   const auto [a, b] = found.pairs[p];
   const GroupPatch& patch = found.group.patches[p];
   const ContactManifold& m = of.manifold;
-  auto corners_a = extremes_of(*of.shape_a);
-  auto corners_b = extremes_of(*of.shape_b);
-  if (!corners_a || !corners_b) {
-    return std::nullopt;
-  }
   TurningPair pair{patch.a,
                    patch.b,
-                   std::move(*corners_a),
-                   std::move(*corners_b),
+                   extremes_of(*of.shape_a).value(),
+                   extremes_of(*of.shape_b).value(),
                    {},
                    {},
                    least_gap * predictor_.touching_gap(a, b),
@@ -266,10 +255,7 @@ std::string EventModes::add_touches_of(const Gathered& found, std::size_t p, con
   };
   const Pose at_a = placed(patch.a, of.piece_a);
   const Pose at_b = placed(patch.b, of.piece_b);
-  auto pair = watched(found, p, of, at_a, at_b);
-  if (!pair) {
-    return fmt::format("{} touch, one turns, and one is a mesh or a compound", run_.names(a, b));
-  }
+  TurningPair pair = watched(found, p, of, at_a, at_b);
   for (std::size_t k = 0; k < m.size; ++k) {
     auto touch = touch_at(m, k, *of.shape_a, at_a, *of.shape_b, at_b);
     if (!touch) {
@@ -286,10 +272,12 @@ std::string EventModes::add_touches_of(const Gathered& found, std::size_t p, con
     touch->piece_a = of.piece_a;
     touch->piece_b = of.piece_b;
     touch->watched = group.pairs.size();
-    touch->point = !of.of_pieces ? k
-                   : group.start.touches.empty() || group.start.touches.back().pair != p
-                       ? 0
-                       : group.start.touches.back().point + 1;
+    touch->point = k;
+    if (of.of_pieces) {  // those of all pieces are counted
+      const auto& touches = group.start.touches;
+      const bool first = touches.empty() || touches.back().pair != p;
+      touch->point = first ? 0 : touches.back().point + 1;
+    }
     if (!has_belts_on_faces(*touch, a, b)) {
       return "a body turns at an edge of a belt";
     }
@@ -300,7 +288,7 @@ std::string EventModes::add_touches_of(const Gathered& found, std::size_t p, con
     }
     group.start.touches.push_back(*touch);
   }
-  group.pairs.push_back(std::move(*pair));
+  group.pairs.push_back(std::move(pair));
   return {};
 }
 
