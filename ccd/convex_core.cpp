@@ -142,6 +142,21 @@ ConvexCore::Bend ConvexCore::bend(const Vector3& m) const {
   return {sizes_.x() / length, Vector3(m.z() / length, 0.0, -m.x() / length)};
 }
 
+ConvexCore::Rim ConvexCore::rim(const Vector3& m) const {
+  if (kind_ == Kind::placed) {
+    const Rim inner = part_->core.rim(part_->axes.transpose() * m);
+    return {part_->centre + part_->axes * inner.middle, part_->axes * inner.axis, inner.radius};
+  }
+  if (kind_ == Kind::cylinder) {
+    return {Vector3(0.0, m.y() < 0.0 ? -sizes_.y() : sizes_.y(), 0.0), Vector3::UnitY(),
+            sizes_.x()};
+  }
+  if (kind_ == Kind::cone && m.y() < 0.0) {
+    return {Vector3(0.0, -sizes_.y(), 0.0), Vector3::UnitY(), sizes_.x()};
+  }
+  return {};
+}
+
 /// All vertices are compared: a walk uphill along edges may end below the highest by any amount if
 /// edges are short.
 std::uint32_t ConvexCore::support_vertex(const Vector3& m) const {

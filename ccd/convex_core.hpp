@@ -58,6 +58,15 @@ class ConvexCore {
   };
   [[nodiscard]] Bend bend(const Vector3& m) const;
 
+  /// The circle around a flat end.
+  struct Rim {
+    Vector3 middle = Vector3::Zero();
+    Vector3 axis = Vector3::Zero();  ///< unit
+    double radius = 0.0;             ///< m; 0: there is none
+  };
+  /// That of the end that looks along m, if one does.
+  [[nodiscard]] Rim rim(const Vector3& m) const;
+
   [[nodiscard]] double support(const Vector3& m) const;
   [[nodiscard]] Vector3 support_point(const Vector3& m) const;
   /// The feature along the unit direction m, of those that m is off by at most `noise` (rad) from.

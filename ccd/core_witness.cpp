@@ -16,6 +16,8 @@ namespace {
 constexpr double near = 1e-6;
 /// Where the distance is so near the reach, as a part of that, it matters to roundoff.
 constexpr double resolved = 1e-4;
+/// What is curved is resolved where GJK bounds its distance by no less than this part of it.
+constexpr double bound_by = 1e-12;
 /// How far b is moved into a, as a part of the thinner one.
 constexpr double push = 1e-4;
 Vector3 any_across(const Vector3& x) {
@@ -159,15 +161,21 @@ void start_elsewhere(const CorePair& pair, const GjkResult& found, CoreWitness& 
 }
 
 /// What touches to roundoff may be inside, and nothing that expands there finds how little: along
-/// an axis of one of them, as across a face that something lies on, they may overlap less.
+/// an axis of one of them, as across a face that something lies on, they may overlap less, or, what
+/// is curved, near that.
 void try_axes(const CorePair& pair, CoreWitness& witness) {
+  const bool curved = is_curved(pair.a) || is_curved(pair.b);
   for (int k = 0; k < 3; ++k) {
     for (const Vector3& axis : {Vector3(pair.R_WA.col(k)), Vector3(pair.R_WB.col(k))}) {
       for (const double sign : {1.0, -1.0}) {
-        const double separation = pair.separation(sign * axis);
+        Vector3 n = sign * axis;
+        double separation = pair.separation(n);
+        if (curved && separation > -near * pair.size()) {
+          polish(pair, witness.on_b - witness.on_a, n, separation);
+        }
         if (separation > witness.separation) {
           witness.separation = separation;
-          witness.n = sign * axis;
+          witness.n = n;
         }
       }
     }
@@ -189,7 +197,10 @@ CoreWitness core_witness(const CorePair& pair, double reach, double precision, d
   CoreWitness witness{found.n, found.lower, found.inside ? 0.0 : found.upper,
                       0.0,     found.on_a,  found.on_b};
   if (!found.inside && found.upper > near * pair.size()) {
-    if (std::abs(found.upper - reach) < resolved * reach) {
+    // Beside a flat end GJK ends where rounding lets no simplex improve, and may be far from it.
+    const bool loose =
+        (is_curved(pair.a) || is_curved(pair.b)) && found.lower < (1.0 - bound_by) * found.upper;
+    if (loose || std::abs(found.upper - reach) < resolved * reach) {
       resolve(pair, witness);
     }
     return witness;

@@ -15,6 +15,7 @@ constexpr double snapping = 2e-3;
 /// A direction that is across an edge within this angle stays across it, rad.
 constexpr double pinned = 1e-4;
 constexpr int most_steps = 12;
+constexpr int most_rounds = 4;
 
 class Polish {
  public:
@@ -46,6 +47,45 @@ class Polish {
         across(edge_b);
       }
     });
+  }
+
+  /// A flat end that is nearly along an edge, or another one, is nearest where its rim crosses
+  /// that, and the direction is across both there: so near to the axis that a step knows no
+  /// curvature.
+  void cross_rims() {
+    const Vector3 n = n_;
+    const ConvexCore::Rim of_a = world(pair_.a.rim(m_a()), pair_.R_WA, Vector3::Zero());
+    const ConvexCore::Rim of_b = world(pair_.b.rim(m_b()), pair_.R_WB, pair_.d);
+    const bool flat_a = lies_flat(of_a, n);
+    const bool flat_b = lies_flat(of_b, n);
+    const DifferencePoint p = pair_.support(n);
+    if (flat_a && flat_b) {
+      return cross(of_a, of_b, n);
+    }
+    const auto cross_edge = [&](const ConvexCore::Rim& rim, const Vector3& x, const Matrix3& R) {
+      return [this, &rim, &n, x, &R](const Vector3& e) {
+        if (std::abs((R * e).dot(n)) <= snapping) {
+          cross_line(rim, x, R * e, n);
+        }
+      };
+    };
+    const auto none = [](const Vector3&) {};
+    // A rim that is steep is there nearly its tangent.
+    const auto tangent = [](const ConvexCore::Rim& rim, const Vector3& x) {
+      return Vector3(rim.axis.cross(x - rim.middle).normalized());
+    };
+    if (flat_a && of_b.radius > 0.0) {
+      cross_line(of_a, p.on_b, tangent(of_b, p.on_b), n);
+    }
+    if (flat_b && of_a.radius > 0.0) {
+      cross_line(of_b, p.on_a, tangent(of_a, p.on_a), n);
+    }
+    if (flat_a) {
+      pair_.b.nearby(m_b(), none, cross_edge(of_a, p.on_b, pair_.R_WB));
+    }
+    if (flat_b) {
+      pair_.a.nearby(m_a(), none, cross_edge(of_b, p.on_a, pair_.R_WA));
+    }
   }
 
   /// One step of Newton's method; false if it does not separate better.
@@ -96,6 +136,55 @@ class Polish {
       }
     }
     return false;
+  }
+
+  static ConvexCore::Rim world(const ConvexCore::Rim& rim, const Matrix3& R, const Vector3& at) {
+    return {at + R * rim.middle, R * rim.axis, rim.radius};
+  }
+  static bool lies_flat(const ConvexCore::Rim& rim, const Vector3& n) {
+    return rim.radius > 0.0 && rim.axis.cross(n).squaredNorm() <= snapping * snapping;
+  }
+  /// Across a rim where `out` leads to from its middle, and across e.
+  void try_across(const ConvexCore::Rim& rim, const Vector3& out, const Vector3& e,
+                  const Vector3& n) {
+    const Vector3 x = rim.axis.cross(out).cross(e);
+    try_near(x.dot(n) < 0.0 ? Vector3(-x) : x, n);
+  }
+  /// A rim and a line through x along e, as seen along the axis.
+  void cross_line(const ConvexCore::Rim& rim, const Vector3& x, const Vector3& e,
+                  const Vector3& n) {
+    const auto flat = [&rim](const Vector3& v) -> Vector3 {
+      return v - rim.axis * rim.axis.dot(v);
+    };
+    const Vector3 from = flat(x - rim.middle);
+    const Vector3 along = flat(e).normalized();
+    const Vector3 foot = from - along * along.dot(from);
+    const double half = rim.radius * rim.radius - foot.squaredNorm();
+    if (half > 0.0) {
+      for (const double side : {-1.0, 1.0}) {
+        try_across(rim, foot + side * std::sqrt(half) * along, e, n);
+      }
+    }
+  }
+  /// Two rims that are nearly in a plane.
+  void cross(const ConvexCore::Rim& a, const ConvexCore::Rim& b, const Vector3& n) {
+    const Vector3 between = b.middle - a.middle;
+    const Vector3 flat = between - a.axis * a.axis.dot(between);
+    const double distance = flat.norm();
+    if (!(distance > 0.0)) {
+      return;
+    }
+    const Vector3 along = flat / distance;
+    // How far the line through both crossings is from the middle of a.
+    const double foot = 0.5 * (distance + (a.radius - b.radius) * (a.radius + b.radius) / distance);
+    const double half = a.radius * a.radius - foot * foot;
+    if (half > 0.0) {
+      for (const double side : {-1.0, 1.0}) {
+        const Vector3 out = foot * along + side * std::sqrt(half) * a.axis.cross(along);
+        const Vector3 out_b = a.middle + out - b.middle;
+        try_across(a, out, b.axis.cross(out_b), n);
+      }
+    }
   }
 
   [[nodiscard]] Vector3 m_a() const { return pair_.R_WA.transpose() * n_; }
@@ -207,10 +296,17 @@ void polish(const CorePair& pair, const Vector3& r, Vector3& n, double& separati
   if (!pair.a.is_round() && !pair.b.is_round()) {
     return;
   }
-  for (int i = 0; i < most_steps && polishing.step(); ++i) {
+  for (int i = 0; i < most_rounds; ++i) {
+    const double before = separation;
+    for (int k = 0; k < most_steps && polishing.step(); ++k) {
+    }
+    polishing.snap(r);
+    polishing.snap(r);  // a cone's side turns with n
+    polishing.cross_rims();
+    if (!(separation > before)) {
+      return;
+    }
   }
-  polishing.snap(r);
-  polishing.snap(r);  // a cone's side turns with n
 }
 
 double depth_by_tetrahedron(const CorePair& pair, const Vector3& n, double depth, double error) {

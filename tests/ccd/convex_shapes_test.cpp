@@ -4,6 +4,7 @@
 #include "ccd/certified.hpp"
 #include "ccd/core_witness.hpp"
 #include "ccd/placed_cores.hpp"
+#include "core/random.hpp"
 #include "tests/catch.hpp"
 
 #include <cmath>
@@ -250,6 +251,82 @@ TEST_CASE("contact patches of round things", "[convex]") {
       certified->manifold(capsule, at(0, 0.25, 0, {0, 0, pi / 2}), box, at(0, -0.5, 0), 1e-6);
   CHECK(on_box.size == 2);
   CHECK(std::abs(on_box.normal.y() + 1.0) <= 1e-12);
+}
+
+// Where n is across the rim and across what crosses it, at the same place, and leads out of both,
+// both are on either side of a plane across n, as far apart as these places: however near to its
+// axis n is, which is where a search finds no slope.
+TEST_CASE("a flat end whose rim crosses an edge, or another rim, at hardly any angle",
+          "[convex][gap]") {
+  const std::uint32_t seed = 20261201;
+  Random random(seed);
+  CAPTURE(seed);
+  const auto direction = [&] {
+    Vector3 v;
+    for (int k = 0; k < 3; ++k) {
+      v[k] = random.uniform(-1.0, 1.0);
+    }
+    return Vector3(v.normalized());
+  };
+  // Rotates the first axis to x, and the second to y.
+  const auto turned = [](const Vector3& first, const Vector3& second, const Vector3& x,
+                         const Vector3& y) {
+    Matrix3 from;
+    from << first, second, first.cross(second);
+    Matrix3 to;
+    to << x, y, x.cross(y);
+    return Quaternion(Matrix3(to * from.transpose())).normalized();
+  };
+  constexpr double rounded = 4e-15;  // roundoff of places and rotations, of bodies of 0.3 m
+  // So much less is found at most (4e-7 before edges were crossed with rims): two rims at 1e-3 rad
+  // to each other are searched for no further. What counts as touch is a hundred times as much.
+  constexpr double missed = 2e-12;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const double radius = random.uniform(0.05, 0.2);
+    const double half = random.uniform(0.01, 0.2);
+    const double gap = std::pow(10.0, random.uniform(-13.0, -3.0));
+    const double off = std::pow(10.0, random.uniform(-13.0, -1.0));  // of n from the axis, rad
+    const Vector3 n = direction();
+    const Vector3 tangent = n.cross(direction()).normalized();
+    // The rim at the origin of the world: its axis and its way out are n turned about the tangent.
+    const Vector3 beside = tangent.cross(n);
+    const Vector3 axis = std::cos(off) * n + std::sin(off) * beside;
+    const Vector3 out = -std::cos(off) * beside + std::sin(off) * n;
+    const bool is_cone = random.uniform(0.0, 1.0) < 0.3;
+    const Vector3 to_rim = is_cone ? Vector3(radius, -0.5 * half, 0.0) : Vector3(radius, half, 0.0);
+    const Shape a = is_cone ? Shape(Cone{radius, 2.0 * half}) : Shape(Cylinder{radius, 2.0 * half});
+    const Quaternion q_a =
+        turned(Vector3::UnitX(), (is_cone ? -1.0 : 1.0) * Vector3::UnitY(), out, axis);
+    const Pose at_a{-(q_a * to_rim), q_a};
+    // An edge of a box along `along`, which goes into the disc; or the rim of a cylinder.
+    const double angle = random.uniform(0.3, pi - 0.3);
+    const Vector3 along = std::cos(angle) * tangent + std::sin(angle) * n.cross(tangent);
+    const Vector3 across = along.cross(n);
+    Shape b = Box{{0.15, 0.1, 0.3}};
+    Vector3 to_b(-0.15, -0.1, random.uniform(-0.1, 0.1));
+    Quaternion q_b;
+    if (random.uniform(0.0, 1.0) < 0.5) {
+      const double lean = random.uniform(0.1, 1.4);
+      // Both faces of the edge lead away from n.
+      q_b = turned(Vector3::UnitZ(), Vector3::UnitX(), along,
+                   std::cos(lean) * n - std::sin(lean) * across);
+    } else {
+      const double r = random.uniform(0.05, 0.2);
+      const double lean = std::pow(10.0, random.uniform(-13.0, -0.3));
+      b = Cylinder{r, 0.1};
+      to_b = {r, -0.05, 0.0};
+      q_b = turned(Vector3::UnitZ(), Vector3::UnitY(), along,
+                   std::cos(lean) * n - std::sin(lean) * across);
+    }
+    const Pose at_b{gap * n - q_b * to_b, q_b};
+    const Overlap found = ccd::measure_cores(a, at_a, b, at_b);
+    const Overlap other = ccd::measure_cores(b, at_b, a, at_a);
+    CAPTURE(trial, gap, off, is_cone);
+    for (const double measured : {found.gap, other.gap}) {
+      CHECK(measured <= gap + rounded);
+      CHECK(measured >= gap - missed);
+    }
+  }
 }
 
 TEST_CASE("points whose volume rounding hides are no hull", "[hull]") {
