@@ -108,6 +108,9 @@ bool is_borne(const TouchFeature& extreme, const std::vector<TouchFeature>& held
   return extreme.radius > 0.0 && (on_axis || (on_rim >= 3 && span >= extreme.radius));
 }
 
+/// What crosses at a smaller sine is taken as round, if it is.
+constexpr double nearly_along = 0.1;
+
 bool belongs(const TouchFeature& corner, const TouchFeature& held) {
   const Vector3 from = corner.at - held.at;
   const double size = corner.at.norm() + held.at.norm();
@@ -116,6 +119,9 @@ bool belongs(const TouchFeature& corner, const TouchFeature& held) {
   }
   if (held.kind == Kind::rim) {
     return corner.kind == Kind::rim && corner.at == held.at;
+  }
+  if (held.kind == Kind::cone) {  // apex and rim are on every plane along its side
+    return true;
   }
   return held.kind == Kind::ball && from.norm() <= same_corner * size;
 }
@@ -362,26 +368,41 @@ class Watcher {
     const double size = 2.0 * (arm_a + arm_b);
     double turning = 2.0 * (a_.turning + b_.turning);
     double spin = 2.0 * (a_.spin + b_.spin);
-    if (touch.on_a.kind == Kind::line && touch.on_b.kind == Kind::line) {
-      // The normal of two lines turns as fast as they do, divided by the sine of their angle.
-      const double sine =
-          (watch_.motion_a.orientation(0.0) * (piece(true).orientation * touch.on_a.direction))
-              .cross(watch_.motion_b.orientation(0.0) *
-                     (piece(false).orientation * touch.on_b.direction))
-              .norm();
-      turning /= sine;
-      spin /= sine;
+    // The normal of lines and rims turns as fast as they do, and where they touch goes round a rim,
+    // divided by the sine of their angle; that of what is round as its middle goes.
+    const bool crosses = (touch.on_a.kind == Kind::line || touch.on_a.kind == Kind::rim) &&
+                         (touch.on_b.kind == Kind::line || touch.on_b.kind == Kind::rim);
+    const BodyState at_a{watch_.motion_a.pose(0.0), {}};
+    const BodyState at_b{watch_.motion_b.pose(0.0), {}};
+    const double sine = crosses ? crossing_sine(touch, at_a, at_b) : 0.0;
+    double around = 0.0;  // 1/m
+    double round = 0.0;   // m
+    for (const TouchFeature* const f : {&touch.on_a, &touch.on_b}) {
+      const double radius = f->kind == Kind::cone ? radius_of_cone(touch, at_a, at_b) : f->radius;
+      around += f->kind == Kind::rim || f->kind == Kind::cone ? 1.0 / radius : 0.0;
+      round += f->kind == Kind::rim ? 0.0 : 0.5 * radius;
+    }
+    if (crosses && (sine > nearly_along || !(round > 0.0))) {
+      const double rate = speeds / (sine * sine);
+      turning = (turning + 2.0 * around * rate) / sine;
+      spin = (spin + 2.0 * around * (bends + 2.0 * turning * rate) / (sine * sine)) / sine;
     } else {
-      // The normal of a ball goes round as its middle goes.
-      double round = 0.0;
-      for (const TouchFeature* const f : {&touch.on_a, &touch.on_b}) {
-        round += f->kind == Kind::rim ? 0.0 : 0.5 * f->radius;
-      }
       turning += speeds / round;
       spin += bends / round + 3.0 * (speeds / round) * (speeds / round);
     }
     c.bend = bends + 2.0 * turning * speeds + size * (spin + 2.0 * turning * turning);
     candidates_.push_back(std::move(c));
+  }
+
+  /// Of the cone that touches, where it does, m.
+  [[nodiscard]] static double radius_of_cone(const Touch& touch, const BodyState& a,
+                                             const BodyState& b) {
+    const TouchNow now = look_at(touch, a, b);
+    const bool of_a = touch.on_a.kind == Kind::cone;
+    const TouchFeature& cone = of_a ? touch.on_a : touch.on_b;
+    const Pose& piece = of_a ? touch.piece_a : touch.piece_b;
+    const Vector3 x = piece.to_body((of_a ? a : b).pose.to_body(of_a ? now.point_a : now.point_b));
+    return (x - cone.at).cross(cone.direction).norm();
   }
 
   /// The two at s, and where all their corners are: planes ask for the same ones.

@@ -18,22 +18,27 @@ struct TouchFeature {
     plane,  ///< of a face
     line,   ///< of an edge; with a radius all within that of it: the side of a capsule
     rim,    ///< a circle, of this radius, about `at` and across `direction`
+    cone,   ///< the side of a cone with its apex at `at`
   };
   Kind kind = Kind::ball;
   Vector3 at = Vector3::Zero();         ///< body frame, m
   Vector3 direction = Vector3::Zero();  ///< outward normal, along the line, or the axis of the
-                                        ///< rim; body frame, unit
+                                        ///< rim or the cone, to its apex; body frame, unit
   double radius = 0.0;                  ///< m
+  /// Of a line or a rim at what is curved: where on it they touch is looked for from here; body
+  /// frame, m.
+  Vector3 near = Vector3::Zero();
+  double sine = 0.0;  ///< of half the angle of a cone
 };
 
-/// Two features that touch at one point: a ball and a plane, a line, a rim or a ball, two lines, or
-/// a rim and a plane.
+/// Two features that touch at one point: a ball and a plane, a line, a rim, a cone or a ball, a rim
+/// and a plane, or two lines, rims or cones that cross, not both of them cones.
 struct Touch {
   std::size_t a = 0;  ///< places in the group
   std::size_t b = 0;
   TouchFeature on_a;
   TouchFeature on_b;
-  Vector3 normal = Vector3::Zero();  ///< from a to b where it was found: the side of two lines
+  Vector3 normal = Vector3::Zero();  ///< from a to b where it was found: the side of what crosses
   double friction = 0.0;             ///< Coulomb's
   double gap = 0.0;                  ///< at which it is held, m
   std::size_t pair = 0;              ///< of the group
@@ -66,6 +71,9 @@ struct TouchNow {
 /// r_a) + `normal_bias`, r from the origins to the points; and so has the velocity its derivative
 /// with `bias`.
 [[nodiscard]] TouchNow look_at(const Touch& touch, const BodyState& a, const BodyState& b);
+
+/// The sine of the angle at which lines, rims or cones cross; 1 of other touches.
+[[nodiscard]] double crossing_sine(const Touch& touch, const BodyState& a, const BodyState& b);
 
 /// Corners of a shape, each a ball; a half-space has none. nullopt: the shape is round in a way
 /// that has no corners.

@@ -1,4 +1,5 @@
 // Which features of two shapes touch at a point of their manifold.
+#include "core/circular.hpp"
 #include "core/contacts/touch.hpp"
 #include "core/contacts/touch_rim.hpp"
 
@@ -135,27 +136,56 @@ TouchFeature disc_of(const TouchFeature& rim) {
   return {Kind::plane, rim.at, std::copysign(1.0, rim.at.y()) * Vector3::UnitY(), 0.0};
 }
 
-/// The rim that a point of the surface (body frame) is on, where it is tilted from what it touches:
-/// of one that lies flat no point touches alone.
+/// Whether a point of the surface is on a rim.
+bool is_at_rim(const TouchFeature& rim, const Vector3& x) {
+  const double size = rim.radius + std::abs(rim.at.y());
+  return std::abs(x.y() - rim.at.y()) <= near_vertex * size &&
+         std::abs(Vector3(x.x(), 0.0, x.z()).norm() - rim.radius) <= near_vertex * size;
+}
+
+/// The rim that a point of the surface (body frame) is on, where it is tilted from what it touches
+/// and the point is the lowest: of one that lies flat no point touches alone.
 std::optional<TouchFeature> rim_feature(const Shape& shape, const Vector3& x,
                                         const Vector3& outward) {
-  constexpr double flat = 1e-4;  // rad
+  constexpr double flat = 1e-8;    // rad
+  constexpr double lowest = 0.98;  // others are as far from it as corners of a polygon
+  const Vector3 slope(outward.x(), 0.0, outward.z());
+  const Vector3 from_axis(x.x(), 0.0, x.z());
+  if (slope.norm() < flat || slope.dot(from_axis) < lowest * slope.norm() * from_axis.norm()) {
+    return std::nullopt;
+  }
   for (const TouchFeature& rim : rims_of_shape(shape)) {
-    const double out = Vector3(x.x(), 0.0, x.z()).norm();
-    const double size = rim.radius + std::abs(rim.at.y());
-    if (std::abs(x.y() - rim.at.y()) <= near_vertex * size &&
-        std::abs(out - rim.radius) <= near_vertex * size &&
-        Vector3(outward.x(), 0.0, outward.z()).norm() >= flat) {
+    if (is_at_rim(rim, x)) {
       return rim;
     }
   }
   return std::nullopt;
 }
 
+/// The ball inside a cone that touches it around through a point of its side at which that lies on
+/// a plane.
+std::optional<TouchFeature> place_in_cone(const Cone& cone, const Vector3& x,
+                                          const Vector3& outward) {
+  const double slant = hypotenuse(cone.radius, cone.height);
+  if (std::abs(outward.y() - cone.radius / slant) > across_an_edge) {
+    return std::nullopt;
+  }
+  const double from_apex = (0.75 * cone.height - x.y()) * slant / cone.height;
+  const double radius = from_apex * cone.radius / cone.height;
+  const Vector3 middle = x - radius * outward;
+  if (!(radius > 0.0) || Vector3(middle.x(), 0.0, middle.z()).norm() > near_side * radius) {
+    return std::nullopt;
+  }
+  return TouchFeature{Kind::ball, middle.y() * Vector3::UnitY(), Vector3::Zero(), radius};
+}
+
 /// A ball about the place on the axis of a round side at which it touches a plane: as the side,
 /// while that is across it.
 std::optional<TouchFeature> place_on_side(const Shape& shape, const Vector3& x,
                                           const Vector3& outward) {
+  if (const auto* cone = std::get_if<Cone>(&shape)) {
+    return place_in_cone(*cone, x, outward);
+  }
   const auto radius = radius_of_side(shape);
   if (!radius || std::abs(outward.y()) > across_an_edge) {
     return std::nullopt;
@@ -197,6 +227,25 @@ std::optional<TouchFeature> line_feature(const Shape& shape, const Vector3& x,
   return best;
 }
 
+/// The side of a cone that a point of the surface is on.
+std::optional<TouchFeature> side_of_cone(const Shape& shape, const Vector3& x,
+                                         const Vector3& outward) {
+  const auto* cone = std::get_if<Cone>(&shape);
+  if (cone == nullptr) {
+    return std::nullopt;
+  }
+  const Vector3 apex = 0.75 * cone->height * Vector3::UnitY();
+  const double sine = cone->radius / hypotenuse(cone->radius, cone->height);
+  const double size = cone->radius + cone->height;
+  const TouchFeature side{Kind::cone, apex, Vector3::UnitY(), 0.0, Vector3::Zero(), sine};
+  const BodyState still{};
+  const Touch touch{.on_a = side, .on_b = {Kind::ball, x, Vector3::Zero(), 0.0}};
+  const TouchNow now = look_at(touch, still, still);
+  return std::abs(now.gap) <= near_vertex * size && (now.normal - outward).norm() <= near_side
+             ? std::optional(side)
+             : std::nullopt;
+}
+
 /// The face, edge or corner that a ball with its middle at x (body frame) is on: the one nearest to
 /// x; nothing if none is known.
 std::optional<TouchFeature> under_ball(const Shape& shape, const Vector3& on,
@@ -215,58 +264,71 @@ std::optional<TouchFeature> under_ball(const Shape& shape, const Vector3& on,
   }
   offer(line_feature(shape, on, outward));
   offer(ball_feature(shape, on, outward));
-  if (std::holds_alternative<Cylinder>(shape)) {
-    for (const TouchFeature& rim : rims_of_shape(shape)) {
-      offer(rim.at.y() * x.y() > 0.0 ? std::optional(rim) : std::nullopt);
-    }
+  offer(side_of_cone(shape, on, outward));
+  for (const TouchFeature& rim : rims_of_shape(shape)) {
+    // Beside the rim of a cone is its side.
+    const bool beside =
+        std::holds_alternative<Cylinder>(shape) ? rim.at.y() * x.y() > 0.0 : is_at_rim(rim, on);
+    offer(beside ? std::optional(rim) : std::nullopt);
   }
   return best;
 }
 
-/// Whether no corner of a shape is beyond the plane through x with this normal (body frame), by
-/// more than roundoff.
+/// Whether no corner and no rim of a shape is beyond the plane through x with this normal (body
+/// frame), by more than roundoff.
 bool is_behind(const Shape& shape, const Vector3& x, const Vector3& normal) {
   constexpr double rounded = 1e-14;
-  const auto c = polytope_corners(shape);
-  return c && std::all_of(c->vertices.begin(), c->vertices.end(), [&](const Vector3& vertex) {
-           return normal.dot(vertex - x) <= rounded * c->size;
+  const auto extremes = extremes_of(shape);
+  return extremes && std::all_of(extremes->begin(), extremes->end(), [&](const TouchFeature& e) {
+           return height_over(e, e.at, e.direction, -normal, x) >= -rounded * radius_of(shape);
          });
 }
 
-/// The edges that cross at a point of the surfaces, none of whose corners is there; nothing where
-/// they are nearly parallel: where they cross then runs away. The normal may be that of a face,
-/// from which edges that cross at its rim are tilted: they are what touches if they separate the
-/// two.
+/// The edge, the side or the rim that a point of the surface is on, and where.
+std::optional<TouchFeature> curve_feature(const Shape& shape, const Vector3& x,
+                                          const Vector3& outward, double tilted) {
+  auto curve = rim_feature(shape, x, outward);
+  curve = curve ? curve : side_of_cone(shape, x, outward);
+  curve = curve ? curve : line_feature(shape, x, outward, tilted);
+  if (curve) {
+    curve->near = x;
+  }
+  return curve;
+}
+
+/// What crosses at a point of the surfaces, edges, round sides or rims, none of whose corners is
+/// there; nothing where they are nearly parallel: where they cross then runs away. The normal may
+/// be that of a face, from which what crosses at its rim is tilted: it is what touches if it
+/// separates the two.
 std::optional<Touch> crossing(const Shape& shape_a, const Pose& a, const Vector3& on_a,
                               const Shape& shape_b, const Pose& b, const Vector3& on_b,
                               const Vector3& n) {
   constexpr double nearly_parallel = 1e-3;
   constexpr double most_tilted = 0.3;
-  const Vector3 n_A = a.orientation.conjugate() * n;
-  const Vector3 n_B = b.orientation.conjugate() * n;
-  const auto edge_a = line_feature(shape_a, on_a, n_A, most_tilted);
-  const auto edge_b = line_feature(shape_b, on_b, n_B, most_tilted);
-  if (!edge_a || !edge_b) {
+  const auto curve_a = curve_feature(shape_a, on_a, a.orientation.conjugate() * n, most_tilted);
+  const auto curve_b = curve_feature(shape_b, on_b, b.orientation.conjugate() * -n, most_tilted);
+  if (!curve_a || !curve_b || (curve_a->kind == Kind::cone && curve_b->kind == Kind::cone)) {
     return std::nullopt;
-  }
-  Vector3 across = (a.orientation * edge_a->direction).cross(b.orientation * edge_b->direction);
-  if (across.norm() < nearly_parallel) {
-    return std::nullopt;
-  }
-  const auto in_plane = [](const TouchFeature& edge, const Vector3& normal) {
-    return std::abs(edge.direction.dot(normal)) <= across_an_edge;
-  };
-  if (!in_plane(*edge_a, n_A) || !in_plane(*edge_b, n_B)) {
-    across *= (across.dot(n) < 0.0 ? -1.0 : 1.0) / across.norm();
-    if (!is_behind(shape_a, edge_a->at, a.orientation.conjugate() * across) ||
-        !is_behind(shape_b, edge_b->at, b.orientation.conjugate() * -across)) {
-      return std::nullopt;
-    }
   }
   Touch touch;
-  touch.on_a = *edge_a;
-  touch.on_b = *edge_b;
+  touch.on_a = *curve_a;
+  touch.on_b = *curve_b;
   touch.normal = n;
+  const BodyState at_a{a, {}};
+  const BodyState at_b{b, {}};
+  const bool is_round = (curve_a->kind == Kind::line ? curve_a->radius : 0.0) +
+                            (curve_b->kind == Kind::line ? curve_b->radius : 0.0) >
+                        0.0;
+  if (!is_round && crossing_sine(touch, at_a, at_b) < nearly_parallel) {
+    return std::nullopt;
+  }
+  const TouchNow now = look_at(touch, at_a, at_b);
+  const bool lines = curve_a->kind == Kind::line && curve_b->kind == Kind::line;
+  if ((!lines || !(now.normal - n).isZero(across_an_edge)) &&
+      (!is_behind(shape_a, a.to_body(now.point_a), a.orientation.conjugate() * now.normal) ||
+       !is_behind(shape_b, b.to_body(now.point_b), b.orientation.conjugate() * -now.normal))) {
+    return std::nullopt;
+  }
   return touch;
 }
 
@@ -278,12 +340,6 @@ bool is_round(const std::optional<TouchFeature>& feature) {
 /// Where a corner or a rim that touches at x is, body frame.
 Vector3 place_of(const TouchFeature& feature, const Vector3& x) {
   return feature.kind == Kind::rim ? x : feature.at;
-}
-
-/// Whether a shape is a box or a hull without rounding.
-bool is_polytope(const Shape& shape) {
-  const auto c = polytope_corners(shape);
-  return c && !(c->rounding > 0.0);
 }
 
 /// Whether two corners, two edges, or a corner and an edge tell the normal with which they touch:
@@ -490,7 +546,10 @@ std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point
       return touch;
     }
   }
-  if (!is_polytope(shape_a) || !is_polytope(shape_b)) {
+  if (auto curves = crossing(shape_a, a, on_a, shape_b, b, on_b, n)) {
+    return curves;
+  }
+  if (is_round(corner_a) || is_round(corner_b) || !extremes_of(shape_a) || !extremes_of(shape_b)) {
     return std::nullopt;
   }
   // The place is held until the next look, at the plane that separates them.

@@ -129,6 +129,9 @@ std::optional<Sides> region(const TouchFeature& feature, const Shape& shape) {
     const double end = 0.5 * cylinder->length;
     return Sides{{Vector3::UnitY(), end}, {-Vector3::UnitY(), end}};
   }
+  if (const auto* cone = std::get_if<Cone>(&shape); cone && feature.kind == Kind::cone) {
+    return Sides{{Vector3::UnitY(), 0.75 * cone->height}, {-Vector3::UnitY(), 0.25 * cone->height}};
+  }
   if (radius_of_disc(feature, shape) > 0.0) {
     return Sides{};
   }
@@ -141,6 +144,7 @@ std::optional<Sides> region(const TouchFeature& feature, const Shape& shape) {
         return Sides{{Vector3::UnitY(), end}, {-Vector3::UnitY(), end}};
       case Kind::plane:
       case Kind::rim:
+      case Kind::cone:
         return std::nullopt;
     }
   }
@@ -179,6 +183,14 @@ double beyond_sides(const Sides& sides, const Vector3& x) {
 }  // namespace
 
 double TouchRim::beyond(const Touch& touch, const BodyState& a, const BodyState& b) const {
+  if (of_normal) {
+    const TouchNow now = look_at(touch, a, b);
+    const TouchFeature& rim = of_a ? touch.on_a : touch.on_b;
+    const Pose& piece = of_a ? touch.piece_a : touch.piece_b;
+    const Pose& body = of_a ? a.pose : b.pose;
+    const Vector3 out = (of_a ? now.point_a : now.point_b) - body.to_world(piece.to_world(rim.at));
+    return (of_a ? -1.0 : 1.0) * now.normal.dot(out);
+  }
   const Pose& own = of_a ? a.pose : b.pose;
   const Pose& other = of_a ? touch.piece_b : touch.piece_a;
   Vector3 at = (of_a ? b : a).pose.to_world(other.to_world((of_a ? touch.on_b : touch.on_a).at));
@@ -197,11 +209,21 @@ std::optional<std::vector<TouchRim>> rims_of(const Touch& touch, const Shape& a,
   for (const bool of_a : {true, false}) {
     const TouchFeature& feature = of_a ? touch.on_a : touch.on_b;
     const TouchFeature& other = of_a ? touch.on_b : touch.on_a;
-    const bool lines = feature.kind == Kind::line && other.kind == Kind::line;
+    const bool crosses =
+        other.kind == Kind::line || other.kind == Kind::rim || other.kind == Kind::cone;
+    const bool lines = feature.kind == Kind::line && crosses;
+    if (feature.kind == Kind::rim && crosses) {
+      TouchRim around;
+      around.of_a = of_a;
+      around.of_normal = true;
+      rims.push_back(std::move(around));
+      continue;
+    }
     // A cap ends where its side begins.
-    const bool cap = feature.kind == Kind::ball && other.kind == Kind::line &&
+    const bool cap = feature.kind == Kind::ball &&
+                     (other.kind == Kind::line || other.kind == Kind::cone) &&
                      std::holds_alternative<Capsule>(of_a ? a : b);
-    const bool of_lines = lines || cap || other.kind == Kind::rim;
+    const bool of_lines = lines || cap || feature.kind == Kind::cone || other.kind == Kind::rim;
     if (!of_lines && (other.kind != Kind::ball || !is_corner(other, of_a ? b : a))) {
       continue;
     }
@@ -241,6 +263,11 @@ std::optional<std::vector<TouchRim::Side>> sides_of_face(const Shape& shape,
 
 double beyond_region(const TouchFeature& feature, const Shape& shape, const Vector3& x) {
   const auto sides = region(feature, shape);
+  if (feature.kind == Kind::cone) {  // of what is above it
+    const BodyState still{};
+    const Touch touch{.on_a = feature, .on_b = {Kind::ball, x, Vector3::Zero(), 0.0}};
+    return beyond_sides(*sides, look_at(touch, still, still).point_a);
+  }
   const double radius = radius_of_disc(feature, shape);
   double beyond = sides ? beyond_sides(*sides, x) : infinity;
   if (feature.kind == Kind::rim) {

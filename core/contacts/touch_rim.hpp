@@ -24,6 +24,8 @@ struct TouchRim {
   double inner = 0.0;       ///< inside is no nearer to that axis than this, m
   bool of_a = false;        ///< the feature is that of a
   bool of_lines = false;    ///< the point is where they touch, otherwise the middle of the ball
+  /// Of a rim that crosses something: inside, the normal leads away from the axis.
+  bool of_normal = false;
 
   /// How far the point is beyond the rim, m; negative: inside.
   [[nodiscard]] double beyond(const Touch& touch, const BodyState& a, const BodyState& b) const;

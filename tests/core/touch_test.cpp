@@ -28,8 +28,56 @@ TouchFeature feature(Kind kind, double radius, Random& random) {
   out.kind = kind;
   out.at = any(random);
   out.direction = kind == Kind::ball ? Vector3(Vector3::Zero()) : Vector3(any(random).normalized());
-  out.radius = kind == Kind::plane ? 0.0 : radius;
+  out.radius = kind == Kind::plane ? 0.0 : kind == Kind::rim ? radius + 0.1 : radius;
+  out.near = out.at;
+  if (kind == Kind::cone) {
+    const Vector3 around = out.direction.cross(any(random)).normalized();
+    out.radius = 0.0;
+    out.sine = random.uniform(0.2, 0.8);
+    out.near =
+        out.at + 0.4 * (out.sine * around - std::sqrt(1.0 - out.sine * out.sine) * out.direction);
+  }
+  if (kind == Kind::rim) {
+    out.near = out.at + out.radius * out.direction.cross(any(random)).normalized();
+  }
   return out;
+}
+
+/// Of a line or a rim, where it is to touch.
+Vector3 place(const TouchFeature& f) { return f.kind == Kind::rim ? f.near : f.at; }
+Vector3 tangent(const TouchFeature& f) {
+  return f.kind == Kind::rim ? Vector3(f.direction.cross(f.near - f.at).normalized()) : f.direction;
+}
+double roundness(const TouchFeature& f) { return f.kind == Kind::rim ? 0.0 : f.radius; }
+
+/// Moves b so that it crosses a at these places.
+void place_across(Touch& touch, const BodyState& a, BodyState& b) {
+  const Vector3 across = (a.pose.orientation * tangent(touch.on_a))
+                             .cross(b.pose.orientation * tangent(touch.on_b))
+                             .normalized();
+  touch.normal = across;
+  const double apart = roundness(touch.on_a) + roundness(touch.on_b);
+  b.pose.position +=
+      a.pose.to_world(place(touch.on_a)) + apart * across - b.pose.to_world(place(touch.on_b));
+}
+
+/// Turns and moves what touches a cone to where the cone's side is.
+void place_at_cone(const TouchFeature& cone, const BodyState& of_cone, const TouchFeature& other,
+                   BodyState& moved) {
+  const Vector3 along = cone.near - cone.at;
+  const Vector3 q = (along - cone.direction * cone.direction.dot(along)).normalized();
+  const Vector3 n = of_cone.pose.orientation *
+                    (std::sqrt(1.0 - cone.sine * cone.sine) * q + cone.sine * cone.direction);
+  Quaternion& turned = moved.pose.orientation;
+  if (other.kind != Kind::ball) {
+    const Vector3 t = turned * tangent(other);
+    turned = Quaternion::FromTwoVectors(t, (t - n * n.dot(t)).normalized()) * turned;
+    if (other.kind == Kind::rim && (turned * (other.near - other.at)).dot(n) > 0.0) {
+      turned = Quaternion(Eigen::AngleAxisd(3.141592653589793, turned * tangent(other))) * turned;
+    }
+  }
+  moved.pose.position +=
+      of_cone.pose.to_world(cone.near) + roundness(other) * n - moved.pose.to_world(place(other));
 }
 
 /// After s without any force or torque about the middle of a ball.
@@ -56,16 +104,20 @@ auto slope(const F& f, double h) {
 TEST_CASE("velocities and accelerations of touches are derivatives", "[friction]") {
   // All pairs of features that touch in one point: balls, planes, edges, sides of capsules, rims.
   Random random(20261130);
-  const std::pair<Kind, Kind> pairs[] = {{Kind::rim, Kind::ball},   {Kind::ball, Kind::rim},
-                                         {Kind::rim, Kind::plane},  {Kind::plane, Kind::rim},
-                                         {Kind::ball, Kind::plane}, {Kind::plane, Kind::ball},
-                                         {Kind::ball, Kind::ball},  {Kind::line, Kind::ball},
-                                         {Kind::ball, Kind::line},  {Kind::line, Kind::line}};
-  for (std::size_t trial = 0; trial < 1000; ++trial) {
+  const std::pair<Kind, Kind> pairs[] = {
+      {Kind::rim, Kind::ball},  {Kind::ball, Kind::rim},   {Kind::rim, Kind::plane},
+      {Kind::plane, Kind::rim}, {Kind::ball, Kind::plane}, {Kind::plane, Kind::ball},
+      {Kind::ball, Kind::ball}, {Kind::line, Kind::ball},  {Kind::ball, Kind::line},
+      {Kind::line, Kind::line}, {Kind::rim, Kind::line},   {Kind::line, Kind::rim},
+      {Kind::rim, Kind::rim}};
+  for (std::size_t trial = 0; trial < 1900; ++trial) {
     const auto [of_a, of_b] = pairs[trial % std::size(pairs)];
     Touch touch;
     touch.on_a = feature(of_a, trial % 4 < 2 ? 0.3 : 0.0, random);
     touch.on_b = feature(of_b, trial % 3 == 0 ? 0.4 : 0.1, random);
+    if (of_a == Kind::ball && of_b == Kind::rim) {
+      touch.on_a.radius += 0.1;  // a corner at a rim has no normal
+    }
     BodyState a{{any(random), Quaternion::UnitRandom()}, {any(random), any(random)}};
     BodyState b{{any(random), Quaternion::UnitRandom()}, {any(random), any(random)}};
     a.pose.orientation =
@@ -73,6 +125,15 @@ TEST_CASE("velocities and accelerations of touches are derivatives", "[friction]
     b.pose.orientation =
         Quaternion(Eigen::AngleAxisd(random.uniform(0.0, 3.0), any(random).normalized()));
     touch.normal = b.pose.position - a.pose.position;
+    if (of_a == Kind::rim ? of_b == Kind::line || of_b == Kind::rim
+                          : of_a == Kind::line && of_b == Kind::rim) {
+      place_across(touch, a, b);
+    }
+    if (of_a == Kind::cone) {
+      place_at_cone(touch.on_a, a, touch.on_b, b);
+    } else if (of_b == Kind::cone) {
+      place_at_cone(touch.on_b, b, touch.on_a, a);
+    }
     // They touch, and neither part nor approach.
     TouchNow now = look_at(touch, a, b);
     b.pose.position -= now.gap * now.normal;
@@ -84,14 +145,14 @@ TEST_CASE("velocities and accelerations of touches are derivatives", "[friction]
     CHECK(std::abs(now.gap) <= 1e-13);
     CHECK((now.point_a - now.point_b).norm() <= 1e-12);
     const auto at = [&](double s) { return look_at(touch, later(a, s), later(b, s)); };
-    const double h = 1e-3;
+    const double h = 2e-4;
     const auto rate = slope([&](double s) { return Eigen::Matrix<double, 1, 1>(at(s).gap); }, h);
     const auto bend = slope(
         [&](double s) { return Eigen::Matrix<double, 1, 1>(at(s).normal.dot(at(s).velocity)); }, h);
     const Vector3 change = slope([&](double s) { return at(s).velocity; }, h);
-    // Nearly parallel lines, and balls whose middles are near to each other, turn fast.
+    // What crosses at a small angle, and balls whose middles are near to each other, turn fast.
     const double steep = 1.0 + std::abs(now.normal_bias) + now.bias.norm();
-    if (steep < 50.0) {
+    if (steep < 20.0 && crossing_sine(touch, a, b) > 0.2) {
       CHECK(std::abs(rate[0]) <= 1e-6 * steep * steep);
       CHECK(std::abs(bend[0] - now.normal_bias) <= 1e-6 * steep * steep);
       CHECK((change - now.bias).norm() <= 1e-6 * steep * steep);
