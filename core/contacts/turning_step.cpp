@@ -2,16 +2,15 @@
 
 #include "core/bent_motion.hpp"
 #include "core/contacts/separation_watch.hpp"
-#include "core/power_nodes.hpp"
+#include "core/contacts/turning_books.hpp"
+#include "core/contacts/turning_island.hpp"
+#include "core/contacts/turning_way.hpp"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <deque>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 namespace kairos {
@@ -42,200 +41,17 @@ constexpr double still_slides = 1e-3;
 
 /// What is this part of its size beyond a rim is beyond it.
 constexpr double over_rim = 1e-12;
-
-/// The group at another instant as its touches see it: without loads and joints.
-TurningState touching_state(const TurningGroup& group, Instant t,
-                            std::span<const BodyState> free_states) {
-  TurningState state;
-  state.radius = group.start.radius;
-  state.touches = group.start.touches;
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < group.bodies.size(); ++i) {
-    const bool free = group.inertia[i].mass > 0.0;
-    const auto driver = std::find_if(group.drivers.begin(), group.drivers.end(),
-                                     [i](const GroupDriver& d) { return d.place == i; });
-    const double moved = driver != group.drivers.end() ? t - driver->motion.start : 0.0;
-    state.states.push_back(free ? free_states[next++]
-                           : driver != group.drivers.end()
-                               ? BodyState{driver->motion.pose(moved), driver->motion.twist(moved)}
-                               : group.start.states[i]);
-    state.bodies.push_back(group_body(group.inertia[i], state.states.back().pose));
-  }
-  return state;
-}
-
-/// Its touches there.
-std::vector<TouchNow> touches_of(const TurningState& state) {
-  std::vector<TouchNow> now;
-  for (const Touch& touch : state.touches) {
-    now.push_back(look_at(touch, state.states[touch.a], state.states[touch.b]));
-  }
-  return now;
-}
-
-/// Of each body of a group among all of them.
-std::vector<std::size_t> own_places(std::size_t n) {
-  std::vector<std::size_t> places(n);
-  std::iota(places.begin(), places.end(), std::size_t{0});
-  return places;
-}
-
-/// Of sliding: along the velocity, and where that is hardly any, as it was.
-Vector3 direction(const TouchNow& now, const Vector3& before, double slow) {
-  const Vector3 u = now.velocity - now.normal * now.normal.dot(now.velocity);
-  const double along = before.dot(u);
-  const Vector3 d = before * std::max(along, slow) + (u - along * before);
-  return (d - now.normal * now.normal.dot(d)).normalized();
-}
-
-std::vector<FrictionChoice> directed(const TurningMode& mode, const std::vector<TouchNow>& now,
-                                     double slow) {
-  std::vector<FrictionChoice> choices = mode.choices;
-  for (std::size_t k = 0; k < choices.size(); ++k) {
-    FrictionChoice& c = choices[k];
-    if ((c.does == Does::slides || c.does == Does::begins) && !c.direction.isZero(0.0)) {
-      c.direction = direction(now[k], c.direction, slow);
-    }
-  }
-  return choices;
-}
-
-/// Slower than this, m/s, what slides goes on as it did: a small part of what a body gains that
-/// falls by its size. Directions of slower sliding change faster than steps can follow.
-double slow_slip(const TurningGroup& group) {
-  double size = 0.0;
-  for (std::size_t i = 0; i < group.bodies.size(); ++i) {
-    size = std::max(size, group.inertia[i].mass > 0.0 ? group.start.radius[i] : 0.0);
-  }
-  return 1e-5 * std::sqrt(TurningForces(group.start).load() * size);
-}
-
-/// Forces of an implicit step: they go with the normals, and are as large as they were.
-std::vector<Vector3> carried_forces(const TurningGroup& group, const TurningMode& mode,
-                                    const std::vector<TouchNow>& now) {
-  std::vector<Vector3> out;
-  for (std::size_t k = 0; k < now.size(); ++k) {
-    const Touch& touch = group.start.touches[k];
-    const Vector3 before =
-        look_at(touch, group.start.states[touch.a], group.start.states[touch.b]).normal;
-    const Vector3& f = mode.forces.force[k];
-    const Vector3& n = now[k].normal;
-    const double pressing = before.dot(f);
-    const Vector3 along = f - pressing * before;
-    out.push_back(pressing * n + (along - n * n.dot(along)));
-  }
-  return out;
-}
-
-/// Contact forces as a force of the island.
-class ContactForce final : public Force {
- public:
-  ContactForce(const TurningGroup& group, const TurningMode& mode)
-      : group_(group), mode_(mode), slow_(slow_slip(group)) {}
-
-  void add(Instant t, std::span<const BodyState> bodies,
-           std::span<Wrench> wrenches) const override {
-    if (mode_.implicit) {
-      const TurningState state = touching_state(group_, t, bodies);
-      const std::vector<TouchNow> now = touches_of(state);
-      add_all(state, now, carried_forces(group_, mode_, now), wrenches);
-      return;
-    }
-    const TurningState state = turning_state(group_, t, bodies);
-    TurningForces forces(state);
-    add_all(state, forces.now(),
-            forces
-                .solve(directed(mode_, forces.now(), slow_),
-                       forces.of_several(TurningForces::Which::some_of_many))
-                .force,
-            wrenches);
-  }
-  [[nodiscard]] double potential(Instant, std::span<const BodyState>) const override { return 0.0; }
-  [[nodiscard]] bool conservative() const override { return false; }
-  [[nodiscard]] std::string description() const override { return "what holds bodies in touch"; }
-
- private:
-  void add_all(const TurningState& state, const std::vector<TouchNow>& touches,
-               const std::vector<Vector3>& force, std::span<Wrench> wrenches) const {
-    std::size_t next = 0;
-    for (std::size_t i = 0; i < group_.bodies.size(); ++i) {
-      if (group_.inertia[i].mass > 0.0) {
-        add_to(i, state, touches, force, wrenches[next++]);
-      }
-    }
-  }
-  static void add_to(std::size_t i, const TurningState& state, const std::vector<TouchNow>& touches,
-                     const std::vector<Vector3>& force, Wrench& wrench) {
-    for (std::size_t k = 0; k < state.touches.size(); ++k) {
-      const Touch& touch = state.touches[k];
-      const TouchNow& now = touches[k];
-      for (const auto& [place, point, sign] :
-           {std::tuple{touch.a, now.point_a, -1.0}, {touch.b, now.point_b, 1.0}}) {
-        if (place == i) {
-          const Vector3 f = sign * force[k];
-          wrench.force += f;
-          wrench.torque += (point - state.states[i].pose.position).cross(f);
-        }
-      }
-    }
-  }
-
-  const TurningGroup& group_;
-  const TurningMode& mode_;
-  double slow_;
-};
-
-/// A force on one body, as one of the group's.
-class PlacedForce final : public Force {
- public:
-  PlacedForce(const Force& force, std::size_t place) : force_(force), place_(place) {}
-
-  void add(Instant t, std::span<const BodyState> bodies,
-           std::span<Wrench> wrenches) const override {
-    force_.add(t, bodies.subspan(place_, 1), wrenches.subspan(place_, 1));
-  }
-  [[nodiscard]] double potential(Instant t, std::span<const BodyState> bodies) const override {
-    return force_.potential(t, bodies.subspan(place_, 1));
-  }
-  [[nodiscard]] bool conservative() const override { return force_.conservative(); }
-  [[nodiscard]] bool involves_rotation() const override { return force_.involves_rotation(); }
-  [[nodiscard]] std::string description() const override { return force_.description(); }
-
- private:
-  const Force& force_;
-  std::size_t place_;
-};
-
-/// Forces on what joints hold together, or those of the joints.
-class MechanismForce final : public Force {
- public:
-  /// `place`: of a body of the group in the island.
-  MechanismForce(const GroupMechanism& mechanism, std::vector<std::size_t> place, bool of_joints)
-      : mechanism_(mechanism), place_(std::move(place)), of_joints_(of_joints) {}
-
-  void add(Instant t, std::span<const BodyState> bodies,
-           std::span<Wrench> wrenches) const override {
-    add_mechanism_forces(mechanism_, place_, of_joints_, t, bodies, wrenches);
-  }
-  [[nodiscard]] double potential(Instant, std::span<const BodyState>) const override { return 0.0; }
-  [[nodiscard]] bool conservative() const override { return false; }
-  [[nodiscard]] std::string description() const override { return "what acts on a mechanism"; }
-
- private:
-  const GroupMechanism& mechanism_;
-  std::vector<std::size_t> place_;
-  bool of_joints_;
-};
+/// A rim that comes to lie flat is looked at again as much before: what is bent to the gaps turns
+/// it by as much as a long step is off, of which a short one that ends where it is flat has
+/// nothing.
+constexpr double short_of_flat = 1e-8;
 
 class Step {
  public:
   Step(const TurningGroup& group, const TurningMode& mode, Stepper& stepper, Instant t)
-      : group_(group), mode_(mode), stepper_(stepper), t_(t), slow_(slow_slip(group)) {
-    for (std::size_t i = 0; i < group.bodies.size(); ++i) {
-      if (group.inertia[i].mass > 0.0) {
-        free_.push_back(i);
-        before_.push_back({group.start.states[i].pose, mode.velocities[i]});
-      }
+      : group_(group), mode_(mode), stepper_(stepper), t_(t), way_(group, mode, t) {
+    for (const std::size_t i : way_.free) {
+      before_.push_back({group.start.states[i].pose, mode.velocities[i]});
     }
   }
 
@@ -244,7 +60,7 @@ class Step {
       return std::move(step_);
     }
     if (!mode_.implicit) {
-      cut_at_strikes(raw_, strike_gap);
+      cut_at_strikes(way_.motions, strike_gap);
     } else {
       reach();
     }
@@ -296,7 +112,7 @@ class Step {
 
   /// What the velocities of an implicit step have come to, which was to be what it was sought for.
   void reach() {
-    const std::vector<TouchNow> there = touches_of(touching_at(step_.stepped));
+    const std::vector<TouchNow> there = touches_of(way_.touching_at(step_.stepped));
     for (std::size_t k = 0; k < there.size(); ++k) {
       const Touch& touch = group_.start.touches[k];
       const Vector3 before =
@@ -306,46 +122,9 @@ class Step {
     }
   }
 
-  [[nodiscard]] std::vector<BodyState> free_states(double s) const {
-    std::vector<BodyState> states;
-    for (const Motion& motion : raw_) {
-      states.push_back({motion.pose(s), motion.twist(s)});
-    }
-    return states;
-  }
-
-  /// The group on its way, s after the start of the step.
-  [[nodiscard]] TurningState at(double s) const {
-    return turning_state(group_, t_ + s, free_states(s));
-  }
-  [[nodiscard]] TurningState touching_at(double s) const {
-    return touching_state(group_, t_ + s, free_states(s));
-  }
-
   bool integrate(double longest) {
-    Island island;
-    std::deque<PlacedForce> applied;
-    const ContactForce force(group_, mode_);
-    for (const std::size_t i : free_) {
-      for (const Force* const of_one : group_.forces[i]) {
-        island.forces.push_back(&applied.emplace_back(*of_one, island.bodies.size()));
-      }
-      island.bodies.push_back(group_.bodies[i]);
-      island.inertia.push_back(group_.inertia[i]);
-      island.constant_force.push_back(group_.constant_force[i]);
-    }
-    std::vector<std::size_t> place(group_.bodies.size(), 0);
-    for (std::size_t k = 0; k < free_.size(); ++k) {
-      place[free_[k]] = k;
-    }
-    std::deque<MechanismForce> hanging;
-    for (const GroupMechanism& mechanism : group_.mechanisms) {
-      island.forces.push_back(&hanging.emplace_back(mechanism, place, false));
-    }
-    island.forces.push_back(&force);
-    for (const GroupMechanism& mechanism : group_.mechanisms) {
-      island.forces.push_back(&hanging.emplace_back(mechanism, place, true));
-    }
+    const TurningIsland integrated(way_);
+    const Island& island = integrated.island();
     const std::int64_t evaluated = stepper_.evaluations();
     double h = longest;
     for (int round = 0; round < most_halvings; ++round) {
@@ -357,8 +136,8 @@ class Step {
         step_.refusal = "integrator: " + std::string(result.reason);
         return false;
       }
-      raw_.assign(free_.size(), {});
-      stepper_.dense_output(raw_);
+      way_.motions.assign(way_.free.size(), {});
+      stepper_.dense_output(way_.motions);
       step_.duration = result.advanced;
       step_.stepped = result.advanced;
       step_.halved = step_.halved || result.advanced < h;
@@ -374,7 +153,7 @@ class Step {
 
   [[nodiscard]] bool keeps_gaps() const {
     for (int j = 1; j <= samples; ++j) {
-      const TurningState state = touching_at(step_.duration * j / samples);
+      const TurningState state = way_.touching_at(step_.duration * j / samples);
       for (std::size_t k = 0; k < state.touches.size(); ++k) {
         const Touch& touch = state.touches[k];
         const double gap = look_at(touch, state.states[touch.a], state.states[touch.b]).gap;
@@ -429,8 +208,8 @@ class Step {
   }
 
   [[nodiscard]] Motion motion_of(std::size_t i, const std::vector<Motion>& motions) const {
-    for (std::size_t k = 0; k < free_.size(); ++k) {
-      if (free_[k] == i) {
+    for (std::size_t k = 0; k < way_.free.size(); ++k) {
+      if (way_.free[k] == i) {
         return motions[k];
       }
     }
@@ -447,16 +226,17 @@ class Step {
   /// What the mode is at its end for at s; `step`: it is not.
   [[nodiscard]] TurningEnd ends_at(double s) {
     if (mode_.implicit) {
-      return rim(touching_at(s)) ? TurningEnd::rim : TurningEnd::step;
+      return rim(way_.touching_at(s)) ? TurningEnd::rim : TurningEnd::step;
     }
-    const TurningState state = at(s);
+    const TurningState state = way_.at(s);
     TurningForces forces(state);
     for (std::size_t k = 0; k < state.touches.size(); ++k) {
       if (stops(mode_.choices[k], forces.now()[k])) {
         return TurningEnd::forces;
       }
     }
-    const auto found = forces.verified(directed(mode_, forces.now(), slow_), {.carry = &carry_});
+    const auto found =
+        forces.verified(directed(mode_, forces.now(), way_.slow), {.carry = &way_.carry});
     double beyond = 0.0;
     // What opens may close again: that is a strike, watched by its gap.
     for (std::size_t k = 0; k < state.touches.size(); ++k) {
@@ -475,7 +255,7 @@ class Step {
   /// Whether what slides, slides back.
   [[nodiscard]] bool stops(const FrictionChoice& c, const TouchNow& now) const {
     return (c.does == Does::slides || c.does == Does::begins) && !c.direction.isZero(0.0) &&
-           c.direction.dot(now.velocity) < -reversed * slow_;
+           c.direction.dot(now.velocity) < -reversed * way_.slow;
   }
 
   /// Whether something is held beyond the rim of what it is on: by more than roundoff, so that it
@@ -491,8 +271,11 @@ class Step {
       for (const TouchRim& rim : group_.rims[k]) {
         const auto& start = group_.start.states;
         const double before = rim.beyond(touch, start[touch.a], start[touch.b]);
-        if (rim.beyond(touch, state.states[touch.a], state.states[touch.b]) >
-            2.0 * std::max(before, 0.0) + over_rim * size) {
+        double most = 2.0 * std::max(before, 0.0) + over_rim * size;
+        if (rim.of_normal) {
+          most = before < -2.0 * short_of_flat * size ? -short_of_flat * size : over_rim * size;
+        }
+        if (rim.beyond(touch, state.states[touch.a], state.states[touch.b]) > most) {
           return true;
         }
       }
@@ -530,15 +313,15 @@ class Step {
     for (int round = 0; round < most_halvings && step_.duration > 0.0; ++round) {
       std::vector<Motion> bent = bend();
       if (!cut_at_strikes(bent, bent_gap)) {
-        raw_ = std::move(bent);
+        way_.motions = std::move(bent);
         if (mode_.implicit && !keeps_gaps()) {
           step_.refusal = "no step is short enough to keep what touches in touch";
           return;
         }
-        for (std::size_t k = 0; k < free_.size(); ++k) {
-          step_.motions[free_[k]] = raw_[k];
+        for (std::size_t k = 0; k < way_.free.size(); ++k) {
+          step_.motions[way_.free[k]] = way_.motions[k];
         }
-        return book();
+        return book_turning_step(way_, step_);
       }
       if (round >= few_cuts) {
         step_.duration *= 0.5;
@@ -551,8 +334,8 @@ class Step {
   /// The motions of free bodies, as they end where nothing is off; sets the states there.
   std::vector<Motion> bend() {
     const double h = step_.duration;
-    std::vector<Motion> bent = raw_;
-    TurningState end = touching_at(h);
+    std::vector<Motion> bent = way_.motions;
+    TurningState end = way_.touching_at(h);
     std::vector<char> held;
     for (const FrictionChoice& c : mode_.choices) {
       held.push_back(c.does != Does::opens ? 1 : 0);
@@ -566,8 +349,8 @@ class Step {
     const std::vector<TouchNow> there = touches_of(end);
     step_.choices = at_end(there);
     const std::vector<Twist> velocities = held_velocities(end, there, step_.choices).of;
-    for (std::size_t k = 0; k < free_.size(); ++k) {
-      const std::size_t i = free_[k];
+    for (std::size_t k = 0; k < way_.free.size(); ++k) {
+      const std::size_t i = way_.free[k];
       BodyState& state = step_.states[i];
       state.pose = end.states[i].pose;
       state.twist = velocities[i];
@@ -618,215 +401,16 @@ class Step {
     state.joints = group_joints(group_.mechanisms, t_ + step_.duration, state.states);
   }
 
-  /// Power of the contact forces at 8 nodes, and the polynomials through it, integrated.
-  void book() {
-    constexpr int nodes = PowerNodes::count;
-    Eigen::MatrixXd of_body =
-        Eigen::MatrixXd::Zero(nodes, static_cast<Eigen::Index>(group_.bodies.size()));
-    Eigen::MatrixXd leaks = of_body;
-    Eigen::MatrixXd of_driver = of_body;
-    Eigen::MatrixXd of_pair = Eigen::MatrixXd::Zero(nodes, body_pairs());
-    Eigen::MatrixXd of_belt = of_pair;
-    Eigen::MatrixXd of_surface = of_pair;
-    for (int j = 0; j < nodes; ++j) {
-      power_at(PowerNodes::at(j) * step_.duration, of_body.row(j), of_pair.row(j), of_belt.row(j),
-               of_surface.row(j), leaks.row(j), of_driver.row(j));
-    }
-    const auto integrated = [&](const Eigen::VectorXd& powers) {
-      return PowerNodes::work(powers, step_.duration);
-    };
-    for (Eigen::Index i = 0; i < of_body.cols(); ++i) {
-      step_.worked.push_back(integrated(of_body.col(i)));
-    }
-    for (Eigen::Index p = 0; p < of_pair.cols(); ++p) {
-      step_.rubbed.push_back(integrated(of_pair.col(p)));
-      for (const auto& [powers_of, axis] : {std::pair{&of_belt, 1}, {&of_surface, 2}}) {
-        if (!powers_of->col(p).isZero(0.0)) {
-          const Polynomial<3> work = integrated(powers_of->col(p));
-          for (int k = 0; k <= work.degree(); ++k) {
-            step_.rubbed.back()[k][axis] = work[k].x();
-          }
-        }
-      }
-    }
-    for (Eigen::Index i = 0; i < of_body.cols(); ++i) {
-      step_.leaked.push_back(integrated(leaks.col(i)));
-      step_.driven.push_back(of_driver.col(i).isZero(0.0) ? Polynomial<3>()
-                                                          : integrated(of_driver.col(i)));
-    }
-    if (free_.size() == 1) {
-      leak_of_one();
-    }
-  }
-
-  /// How many pairs of bodies touch.
-  [[nodiscard]] Eigen::Index body_pairs() const {
-    std::size_t count = 0;
-    for (const TurningPair& pair : group_.pairs) {
-      count = std::max(count, pair.of + 1);
-    }
-    return static_cast<Eigen::Index>(count);
-  }
-
-  /// Of one free body: the difference of what is told, so that it closes the ledger to the last
-  /// bit.
-  void leak_of_one() {
-    Polynomial<3>& leaked = step_.leaked[free_[0]];
-    leaked = step_.worked[free_[0]];
-    for (const auto& work : step_.rubbed) {
-      for (int k = 0; k <= work.degree(); ++k) {
-        leaked[k].x() -= work[k].sum();
-      }
-    }
-  }
-
-  template <typename Bodies, typename Pairs>
-  void power_at(double s, Bodies of_body, Pairs of_pair, Pairs of_belt, Pairs of_surface,
-                Bodies leaks, Bodies of_driver) {
-    const TurningState state = mode_.implicit ? touching_at(s) : at(s);
-    const std::vector<TouchNow> touches = touches_of(state);
-    const auto choices = directed(mode_, touches, slow_);
-    // Of forces that are redundant those inside their cones rub.
-    const std::vector<Vector3> force =
-        mode_.implicit ? carried_forces(group_, mode_, touches)
-                       : TurningForces(state).verified(choices, {.carry = &carry_}).force;
-    for (std::size_t k = 0; k < state.touches.size(); ++k) {
-      const Touch& touch = state.touches[k];
-      const TouchNow& now = touches[k];
-      const auto power = [&](std::size_t i, const Vector3& point) {
-        const BodyState& at = state.states[i];
-        return force[k].dot(at.twist.at(point, at.pose.position));
-      };
-      const double on_a = -power(touch.a, now.point_a);
-      const double on_b = power(touch.b, now.point_b);
-      for (const auto& [i, on] : {std::pair{touch.a, on_a}, {touch.b, on_b}}) {
-        if (!(group_.inertia[i].mass > 0.0)) {
-          of_surface[static_cast<Eigen::Index>(touch.pair)] -= on;
-        }
-      }
-      of_body[static_cast<Eigen::Index>(touch.a)] += on_a;
-      of_body[static_cast<Eigen::Index>(touch.b)] += on_b;
-      double rubbed = 0.0;
-      double carried = 0.0;
-      if (!touch.belt.isZero(0.0)) {
-        const Vector3 along = force[k] - now.normal * now.normal.dot(force[k]);
-        carried = -along.dot(touch.belt);
-        of_belt[static_cast<Eigen::Index>(touch.pair)] += carried;
-      }
-      const bool slides = choices[k].does == Does::slides || choices[k].does == Does::begins;
-      // What sticks at the end of an implicit step may have slid in it.
-      const bool may_slide = mode_.implicit && choices[k].does != Does::opens;
-      if (may_slide || (slides && !choices[k].direction.isZero(0.0))) {
-        const Vector3 along = force[k] - now.normal * now.normal.dot(force[k]);
-        rubbed = std::min(along.dot(now.velocity), 0.0);
-      }
-      of_pair[static_cast<Eigen::Index>(touch.pair)] += rubbed;
-      const std::size_t first = group_.inertia[touch.a].mass > 0.0 ? touch.a : touch.b;
-      leaks[static_cast<Eigen::Index>(first)] += on_a + on_b - (rubbed + carried);
-    }
-    const auto joints = mode_.implicit && drives_joints()
-                            ? group_joints(group_.mechanisms, t_ + s, state.states)
-                            : state.joints;
-    if (joints != nullptr && joints->driven()) {
-      const Eigen::VectorXd power = joints->driven_work(given(state, touches, force));
-      for (Eigen::Index m = 0; m < power.size(); ++m) {
-        of_driver[static_cast<Eigen::Index>(joints->first_of(static_cast<std::size_t>(m)))] +=
-            power[m];
-      }
-    }
-  }
-
-  [[nodiscard]] bool drives_joints() const {
-    return std::any_of(
-        group_.mechanisms.begin(), group_.mechanisms.end(),
-        [](const GroupMechanism& m) { return m.joints != nullptr && m.joints->driven(); });
-  }
-
-  /// What contact forces give to the bodies, six numbers for each, as if there were no joints.
-  static Eigen::VectorXd given(const TurningState& state, const std::vector<TouchNow>& touches,
-                               const std::vector<Vector3>& force) {
-    Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(6 * state.bodies.size()));
-    for (std::size_t k = 0; k < state.touches.size(); ++k) {
-      const Touch& touch = state.touches[k];
-      const TouchNow& now = touches[k];
-      for (const auto& [i, point, sign] :
-           {std::tuple{touch.a, now.point_a, -1.0}, {touch.b, now.point_b, 1.0}}) {
-        const GroupBody& body = state.bodies[i];
-        const Vector3 on = sign * force[k];
-        const auto at = static_cast<Eigen::Index>(6 * i);
-        out.segment<3>(at) += body.inverse_mass * on;
-        out.segment<3>(at + 3) += body.inverse_inertia * (point - body.position).cross(on);
-      }
-    }
-    return out;
-  }
-
   const TurningGroup& group_;
   const TurningMode& mode_;
   Stepper& stepper_;
   Instant t_;
-  double slow_;
-  std::vector<std::size_t> free_;
+  TurningWay way_;
   std::vector<BodyState> before_;
-  std::vector<Motion> raw_;         ///< by free body
-  std::vector<std::size_t> carry_;  ///< which rays of cones carried the load when asked last
   TurningStep step_;
 };
 
 }  // namespace
-
-Twist accelerations_of(const Motion& motion, Instant t) {
-  const double s = t - motion.start;
-  Twist out{motion.acceleration(s), Vector3::Zero()};
-  if (motion.rotation != RotationKind::fixed) {
-    out.angular = motion.angular_velocity.derivative(s);
-  }
-  return out;
-}
-
-TurningState turning_state(const TurningGroup& group, Instant t,
-                           std::span<const BodyState> free_states) {
-  TurningState state = touching_state(group, t, free_states);
-  std::vector<Wrench> applied;
-  for (std::size_t i = 0; i < group.bodies.size(); ++i) {
-    const BodyState& s = state.states[i];
-    applied.push_back({group.constant_force[i], Vector3::Zero()});
-    if (group.inertia[i].mass > 0.0) {
-      for (const Force* const force : group.forces[i]) {
-        force->add(t, {&s, 1}, {&applied.back(), 1});
-      }
-    }
-  }
-  const auto load = [&](std::size_t i) {
-    const BodyInertia& inertia = group.inertia[i];
-    Twist out;
-    if (inertia.mass > 0.0) {
-      out.linear = applied[i].force / inertia.mass;
-      if (inertia.rotates) {
-        out.angular = angular_acceleration(inertia, state.states[i], applied[i].torque);
-      }
-    }
-    return out;
-  };
-  for (const GroupMechanism& mechanism : group.mechanisms) {
-    const std::vector<std::size_t> place = own_places(group.bodies.size());
-    add_mechanism_forces(mechanism, place, false, t, state.states, applied);
-    for (const std::size_t i : mechanism.places) {
-      const Twist alone = load(i);
-      state.applied =
-          std::max(state.applied, alone.linear.norm() + alone.angular.norm() * state.radius[i]);
-    }
-    add_mechanism_forces(mechanism, place, true, t, state.states, applied);
-  }
-  for (std::size_t i = 0; i < group.bodies.size(); ++i) {
-    state.loads.push_back(load(i));
-  }
-  for (const GroupDriver& driver : group.drivers) {
-    state.loads[driver.place] = accelerations_of(driver.motion, t);
-  }
-  state.joints = group_joints(group.mechanisms, t, state.states);
-  return state;
-}
 
 double turning_rest(const TurningGroup& group) { return 4.0 * reversed * slow_slip(group); }
 
