@@ -59,7 +59,7 @@ class Jams {
     bool jams = false;
     for (std::size_t k = 0; k < now_.size(); ++k) {
       approach = approach || now_[k].normal.dot(now_[k].velocity) < -roundoff();
-      jams = jams || presses_itself(k, false) || presses_itself(k, true);
+      jams = jams || slides_roughly(k) || presses_itself(k, false) || presses_itself(k, true);
     }
     std::optional<Jam> found;
     if (approach) {
@@ -83,6 +83,11 @@ class Jams {
   [[nodiscard]] double friction(std::size_t k) const {
     return state_.touches[k].rough ? std::numeric_limits<double>::infinity()
                                    : state_.touches[k].friction;
+  }
+
+  /// Whether touch k slides with infinite friction.
+  [[nodiscard]] bool slides_roughly(std::size_t k) const {
+    return state_.touches[k].rough && slip(k).norm() > still_;
   }
 
   /// Whether what presses touch k together, with the friction of that, does not part it.

@@ -20,6 +20,7 @@ struct Jam {
 /// - in Painleve's case: friction presses what slides together the more the more it presses. Forces
 ///   grow beyond all bounds at once, which is an impact at no speed (a tangential impact
 ///   [Genot1999]);
+/// - where friction is infinite, and what is pressed slides: the same;
 /// - where they approach, too slowly for a hop worth the name: an impact without rebound.
 /// Impulses are within the cones of friction, against what still slides afterwards, and none where
 /// they part [Moreau1988]: kinetic energy never grows, whatever they are. They are looked for touch

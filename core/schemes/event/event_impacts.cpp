@@ -274,7 +274,10 @@ void EventContacts::go_on_struck(const Event& event, double approach, std::vecto
   if (lands(a, b, event.contact, t) || rest_on_joints(event, t)) {
     return;
   }
-  go_on_as_found(event, accumulation_.after_impact(a, b, std::max(-approach, 0.0), t), t);
+  // Infinite friction may throw apart faster than they met.
+  const double parting = normal_velocity(event.contact, motions_.now(a), motions_.now(b));
+  go_on_as_found(event, accumulation_.after_impact(a, b, std::max({-approach, parting, 0.0}), t),
+                 t);
 }
 
 /// They go on, or impacts like theirs have no end.

@@ -265,6 +265,7 @@ class EventModes {
                                                       const TurningGroup& group) const;
   [[nodiscard]] static bool let_hop(Turning& turning, double roundoff);
   void let_jam(const Gathered& found, Turning& turning, Instant t, double still);
+  [[nodiscard]] static bool slides_roughly(const Turning& turning, double still);
   void tell_jam(const Gathered& found, const Turning& turning, Instant t);
   [[nodiscard]] bool has_room(std::span<const BodyState> before, const Gathered& found, Instant t);
   [[nodiscard]] bool part_ways(const Gathered& found, Turning& turning, Instant t,

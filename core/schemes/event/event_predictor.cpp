@@ -670,15 +670,19 @@ void EventPredictor::take_answer(const PairQuery& query, const TimeOfImpact& toi
       }
       return push_meeting(query, toi);
     case ToiStatus::impact:
+      // What their motions may be off by may be more than what they have parted by so far.
+      if (!field && toi.t_lo == 0.0 && motions_.error_radius(a) + motions_.error_radius(b) > 0.0 &&
+          !approach(query)) {
+        return leave_overlap(query);
+      }
       return push_meeting(query, toi);
     case ToiStatus::overlapping:
       return field ? push(query, 0.0, DueKind::field_entered) : leave_overlap(query);
   }
 }
 
-/// Two solids that overlap by roundoff: an impact if they approach, nothing if they part. A pair
-/// that stays would fall through each other, unless a mode of contact can hold it.
-void EventPredictor::leave_overlap(const PairQuery& query) {
+/// Whether two solids approach each other where they are nearest when they are asked about.
+bool EventPredictor::approach(const PairQuery& query) const {
   const auto [a, b] = std::pair{query.a, query.b};
   const auto state_of = [&](BodyIndex i) {
     const Motion motion = motion_of(i, query);
@@ -689,7 +693,13 @@ void EventPredictor::leave_overlap(const PairQuery& query) {
   const BodyState state_b = state_of(b);
   const Overlap o =
       run_.detector.overlap(run_.model.shape(a), state_a.pose, run_.model.shape(b), state_b.pose);
-  if (normal_velocity({o.point, o.normal, o.gap}, state_a, state_b) < 0.0) {
+  return normal_velocity({o.point, o.normal, o.gap}, state_a, state_b) < 0.0;
+}
+
+/// Two solids that overlap by roundoff: an impact if they approach, nothing if they part. A pair
+/// that stays would fall through each other, unless a mode of contact can hold it.
+void EventPredictor::leave_overlap(const PairQuery& query) {
+  if (approach(query)) {
     return push(query, 0.0, DueKind::impact);
   }
   const TimeOfImpact meanwhile = without_errors(query);

@@ -136,6 +136,7 @@ class EventPredictor {
   void push_meeting(const PairQuery& of, const TimeOfImpact& toi);
   void look_nearer(const PairQuery& query, TimeOfImpact toi);
   void predict_parting(const PairQuery& query, DueKind kind);
+  [[nodiscard]] bool approach(const PairQuery& query) const;
   void leave_overlap(const PairQuery& query);
   /// What a query cost is told.
   TimeOfImpact counted(const TimeOfImpact& toi);

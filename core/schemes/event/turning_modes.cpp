@@ -184,6 +184,9 @@ void EventModes::find_forces(const Gathered& found, Turning& turning, Instant t)
     return turning.mode.refusal.empty();
   };
   if (find()) {
+    if (slides_roughly(turning, still)) {
+      let_jam(found, turning, t, still);
+    }
     return;
   }
   const TurningGroup all = turning.group;
@@ -217,6 +220,21 @@ bool EventModes::let_hop(Turning& turning, double roundoff) {
   group.start.touches = std::move(touches);
   group.rims = std::move(rims);
   return true;
+}
+
+/// Whether something is pressed that slides with infinite friction.
+bool EventModes::slides_roughly(const Turning& turning, double still) {
+  for (std::size_t k = 0; k < turning.group.start.touches.size(); ++k) {
+    const Touch& touch = turning.group.start.touches[k];
+    const auto& states = turning.group.start.states;
+    if (touch.rough && !turning.mode.forces.force[k].isZero(0.0)) {
+      const TouchNow now = look_at(touch, states[touch.a], states[touch.b]);
+      if ((now.velocity - now.normal * now.normal.dot(now.velocity)).norm() > still) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 /// Where friction jams what slides, an impulse stops it, and it goes on from there.
@@ -258,7 +276,8 @@ void EventModes::tell_jam(const Gathered& found, const Turning& turning, Instant
     const auto& [a, b] = found.pairs[touch.pair];
     const std::size_t at_a = found.place(a);
     const std::size_t at_b = found.place(b);
-    Event event{.time = t, .kind = EventKind::impact, .flag = EventFlag::painleve, .a = a, .b = b};
+    const EventFlag flag = touch.rough ? EventFlag::none : EventFlag::painleve;
+    Event event{.time = t, .kind = EventKind::impact, .flag = flag, .a = a, .b = b};
     const TouchNow now = look_at(touch, found.states[touch.a], found.states[touch.b]);
     event.contact = {0.5 * (now.point_a + now.point_b), now.normal, now.gap};
     event.contact.restitution = run_.model.restitution(a, b);
