@@ -373,7 +373,10 @@ std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point
   if (auto curves = crossing(shape_a, a, on_a, shape_b, b, on_b, n)) {
     return curves;
   }
-  if (is_round(corner_a) || is_round(corner_b) || !extremes_of(shape_a) || !extremes_of(shape_b)) {
+  // Where both are round that place runs away.
+  const bool has_corners = polytope_corners(shape_a) || polytope_corners(shape_b);
+  if (!has_corners || is_round(corner_a) || is_round(corner_b) || !extremes_of(shape_a) ||
+      !extremes_of(shape_b)) {
     return std::nullopt;
   }
   // The place is held until the next look, at the plane that separates them.
