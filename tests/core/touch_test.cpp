@@ -23,6 +23,18 @@ Vector3 any(Random& random) {
   return v;
 }
 
+/// One number a statement: in what order arguments are drawn is not known.
+BodyState any_state(Random& random) {
+  BodyState state;
+  state.pose.position = any(random);
+  state.twist.linear = any(random);
+  state.twist.angular = any(random);
+  const double angle = random.uniform(0.0, 3.0);
+  const Vector3 axis = any(random).normalized();
+  state.pose.orientation = Quaternion(Eigen::AngleAxisd(angle, axis));
+  return state;
+}
+
 TouchFeature feature(Kind kind, double radius, Random& random) {
   TouchFeature out;
   out.kind = kind;
@@ -104,6 +116,8 @@ auto slope(const F& f, double h) {
 TEST_CASE("velocities and accelerations of touches are derivatives", "[friction]") {
   // All pairs of features that touch in one point: balls, planes, edges, sides of capsules, rims.
   Random random(20261130);
+  int elsewhere = 0;
+  int asked = 0;
   const std::pair<Kind, Kind> pairs[] = {
       {Kind::rim, Kind::ball},  {Kind::ball, Kind::rim},   {Kind::rim, Kind::plane},
       {Kind::plane, Kind::rim}, {Kind::ball, Kind::plane}, {Kind::plane, Kind::ball},
@@ -118,24 +132,28 @@ TEST_CASE("velocities and accelerations of touches are derivatives", "[friction]
     if (of_a == Kind::ball && of_b == Kind::rim) {
       touch.on_a.radius += 0.1;  // a corner at a rim has no normal
     }
-    BodyState a{{any(random), Quaternion::UnitRandom()}, {any(random), any(random)}};
-    BodyState b{{any(random), Quaternion::UnitRandom()}, {any(random), any(random)}};
-    a.pose.orientation =
-        Quaternion(Eigen::AngleAxisd(random.uniform(0.0, 3.0), any(random).normalized()));
-    b.pose.orientation =
-        Quaternion(Eigen::AngleAxisd(random.uniform(0.0, 3.0), any(random).normalized()));
+    BodyState a = any_state(random);
+    BodyState b = any_state(random);
     touch.normal = b.pose.position - a.pose.position;
+    bool placed = false;
     if (of_a == Kind::rim ? of_b == Kind::line || of_b == Kind::rim
                           : of_a == Kind::line && of_b == Kind::rim) {
       place_across(touch, a, b);
+      placed = true;
     }
     if (of_a == Kind::cone) {
       place_at_cone(touch.on_a, a, touch.on_b, b);
+      placed = true;
     } else if (of_b == Kind::cone) {
       place_at_cone(touch.on_b, b, touch.on_a, a);
+      placed = true;
     }
     // They touch, and neither part nor approach.
     TouchNow now = look_at(touch, a, b);
+    if (placed && !(std::abs(now.gap) <= 1e-9)) {
+      ++elsewhere;  // what bends towards the other is nearest there
+      continue;
+    }
     b.pose.position -= now.gap * now.normal;
     now = look_at(touch, a, b);
     b.twist.linear -= now.normal * now.normal.dot(now.velocity);
@@ -145,17 +163,27 @@ TEST_CASE("velocities and accelerations of touches are derivatives", "[friction]
     CHECK(std::abs(now.gap) <= 1e-13);
     CHECK((now.point_a - now.point_b).norm() <= 1e-12);
     const auto at = [&](double s) { return look_at(touch, later(a, s), later(b, s)); };
-    const double h = 2e-4;
-    const auto rate = slope([&](double s) { return Eigen::Matrix<double, 1, 1>(at(s).gap); }, h);
-    const auto bend = slope(
-        [&](double s) { return Eigen::Matrix<double, 1, 1>(at(s).normal.dot(at(s).velocity)); }, h);
-    const Vector3 change = slope([&](double s) { return at(s).velocity; }, h);
-    // What crosses at a small angle, and balls whose middles are near to each other, turn fast.
+    // Where differences of two lengths agree: what crosses at a small angle, or bends towards the
+    // other nearly as much as that bends away, turns fast, or runs away.
+    const auto differences = [&](double h) {
+      Eigen::Matrix<double, 5, 1> out;
+      out[0] = slope([&](double s) { return Eigen::Matrix<double, 1, 1>(at(s).gap); }, h)[0];
+      out[1] = slope(
+          [&](double s) { return Eigen::Matrix<double, 1, 1>(at(s).normal.dot(at(s).velocity)); },
+          h)[0];
+      out.tail<3>() = slope([&](double s) { return at(s).velocity; }, h);
+      return out;
+    };
+    const auto found = differences(2e-4);
     const double steep = 1.0 + std::abs(now.normal_bias) + now.bias.norm();
-    if (steep < 20.0 && crossing_sine(touch, a, b) > 0.2) {
-      CHECK(std::abs(rate[0]) <= 1e-6 * steep * steep);
-      CHECK(std::abs(bend[0] - now.normal_bias) <= 1e-6 * steep * steep);
-      CHECK((change - now.bias).norm() <= 1e-6 * steep * steep);
+    const double allowed = 1e-6 * steep * steep;
+    if (steep < 50.0 && (found - differences(4e-4)).norm() <= 0.1 * allowed) {
+      ++asked;
+      CHECK(std::abs(found[0]) <= allowed);
+      CHECK(std::abs(found[1] - now.normal_bias) <= allowed);
+      CHECK((found.tail<3>() - now.bias).norm() <= allowed);
     }
   }
+  CHECK(elsewhere < 100);
+  CHECK(asked > 1400);
 }
