@@ -76,10 +76,7 @@ class Jams {
 
  private:
   [[nodiscard]] double roundoff() const { return 64.0 * epsilon * fastest_; }
-  [[nodiscard]] Vector3 slip(std::size_t k) const {
-    const TouchNow& now = now_[k];
-    return now.velocity - now.normal * now.normal.dot(now.velocity);
-  }
+  [[nodiscard]] Vector3 slip(std::size_t k) const { return now_[k].slip(); }
   [[nodiscard]] double friction(std::size_t k) const {
     return state_.touches[k].rough ? std::numeric_limits<double>::infinity()
                                    : state_.touches[k].friction;

@@ -368,10 +368,10 @@ class Watcher {
     const double size = 2.0 * (arm_a + arm_b);
     double turning = 2.0 * (a_.turning + b_.turning);
     double spin = 2.0 * (a_.spin + b_.spin);
-    // The normal of lines and rims turns as fast as they do, and where they touch goes round a rim,
-    // divided by the sine of their angle; that of what is round as its middle goes.
-    const bool crosses = (touch.on_a.kind == Kind::line || touch.on_a.kind == Kind::rim) &&
-                         (touch.on_b.kind == Kind::line || touch.on_b.kind == Kind::rim);
+    // The normal of lines, rims and cones turns as fast as they do, and where they touch goes round
+    // them, divided by the sine of their angle; that of what is round as its middle goes.
+    const bool crosses = touch.on_a.crosses() && touch.on_b.crosses();
+    const bool of_cone = touch.on_a.kind == Kind::cone || touch.on_b.kind == Kind::cone;
     const BodyState at_a{watch_.motion_a.pose(0.0), {}};
     const BodyState at_b{watch_.motion_b.pose(0.0), {}};
     const double sine = crosses ? crossing_sine(touch, at_a, at_b) : 0.0;
@@ -382,7 +382,7 @@ class Watcher {
       around += f->kind == Kind::rim || f->kind == Kind::cone ? 1.0 / radius : 0.0;
       round += f->kind == Kind::rim ? 0.0 : 0.5 * radius;
     }
-    if (crosses && (sine > nearly_along || !(round > 0.0))) {
+    if (crosses && (of_cone || sine > nearly_along || !(round > 0.0))) {
       const double rate = speeds / (sine * sine);
       turning = (turning + 2.0 * around * rate) / sine;
       spin = (spin + 2.0 * around * (bends + 2.0 * turning * rate) / (sine * sine)) / sine;

@@ -462,6 +462,11 @@ TouchNow look_at(const Touch& touch, const BodyState& state_a, const BodyState& 
   return now;
 }
 
+TouchNow look_at(const TouchFeature& feature, const Vector3& x) {
+  const Touch touch{.on_a = feature, .on_b = {Kind::ball, x, Vector3::Zero(), 0.0}};
+  return look_at(touch, BodyState{}, BodyState{});
+}
+
 double crossing_sine(const Touch& touch, const BodyState& state_a, const BodyState& state_b) {
   const Placed a = placed_a(touch, state_a);
   const Placed b = placed_b(touch, state_b);

@@ -29,6 +29,11 @@ struct TouchFeature {
   /// frame, m.
   Vector3 near = Vector3::Zero();
   double sine = 0.0;  ///< of half the angle of a cone
+
+  /// Whether it touches others of this kind where both cross.
+  [[nodiscard]] bool crosses() const {
+    return kind == Kind::line || kind == Kind::rim || kind == Kind::cone;
+  }
 };
 
 /// Two features that touch at one point: a ball and a plane, a line, a rim, a cone or a ball, a rim
@@ -64,6 +69,9 @@ struct TouchNow {
   Vector3 velocity = Vector3::Zero();  ///< where they touch, m/s
   double normal_bias = 0.0;        ///< second derivative of the gap without accelerations, m/s^2
   Vector3 bias = Vector3::Zero();  ///< derivative of `velocity` without accelerations, m/s^2
+
+  /// The velocity along the surface, m/s.
+  [[nodiscard]] Vector3 slip() const { return velocity - normal * normal.dot(velocity); }
 };
 
 /// Where and how fast two features touch, to second order of their motion: with accelerations
@@ -71,6 +79,9 @@ struct TouchNow {
 /// r_a) + `normal_bias`, r from the origins to the points; and so has the velocity its derivative
 /// with `bias`.
 [[nodiscard]] TouchNow look_at(const Touch& touch, const BodyState& a, const BodyState& b);
+
+/// Where a feature is nearest to the point x; all in its frame.
+[[nodiscard]] TouchNow look_at(const TouchFeature& feature, const Vector3& x);
 
 /// The sine of the angle at which lines, rims or cones cross; 1 of other touches.
 [[nodiscard]] double crossing_sine(const Touch& touch, const BodyState& a, const BodyState& b);

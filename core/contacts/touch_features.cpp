@@ -165,9 +165,7 @@ std::optional<TouchFeature> side_of_cone(const Shape& shape, const Vector3& x,
   const double sine = cone->radius / hypotenuse(cone->radius, cone->height);
   const double size = cone->radius + cone->height;
   const TouchFeature side{Kind::cone, apex, Vector3::UnitY(), 0.0, Vector3::Zero(), sine};
-  const BodyState still{};
-  const Touch touch{.on_a = side, .on_b = {Kind::ball, x, Vector3::Zero(), 0.0}};
-  const TouchNow now = look_at(touch, still, still);
+  const TouchNow now = look_at(side, x);
   return std::abs(now.gap) <= near_vertex * size && (now.normal - outward).norm() <= near_side
              ? std::optional(side)
              : std::nullopt;

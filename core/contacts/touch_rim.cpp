@@ -209,10 +209,8 @@ std::optional<std::vector<TouchRim>> rims_of(const Touch& touch, const Shape& a,
   for (const bool of_a : {true, false}) {
     const TouchFeature& feature = of_a ? touch.on_a : touch.on_b;
     const TouchFeature& other = of_a ? touch.on_b : touch.on_a;
-    const bool crosses =
-        other.kind == Kind::line || other.kind == Kind::rim || other.kind == Kind::cone;
-    const bool lines = feature.kind == Kind::line && crosses;
-    if (feature.kind == Kind::rim && crosses) {
+    const bool lines = feature.kind == Kind::line && other.crosses();
+    if (feature.kind == Kind::rim && other.crosses()) {
       TouchRim around;
       around.of_a = of_a;
       around.of_normal = true;
@@ -264,9 +262,7 @@ std::optional<std::vector<TouchRim::Side>> sides_of_face(const Shape& shape,
 double beyond_region(const TouchFeature& feature, const Shape& shape, const Vector3& x) {
   const auto sides = region(feature, shape);
   if (feature.kind == Kind::cone) {  // of what is above it
-    const BodyState still{};
-    const Touch touch{.on_a = feature, .on_b = {Kind::ball, x, Vector3::Zero(), 0.0}};
-    return beyond_sides(*sides, look_at(touch, still, still).point_a);
+    return beyond_sides(*sides, look_at(feature, x).point_a);
   }
   const double radius = radius_of_disc(feature, shape);
   double beyond = sides ? beyond_sides(*sides, x) : infinity;

@@ -61,10 +61,7 @@ class Search {
   }
 
  private:
-  [[nodiscard]] Vector3 slip(std::size_t k) const {
-    const TouchNow& now = forces_.now()[k];
-    return now.velocity - now.normal * now.normal.dot(now.velocity);
-  }
+  [[nodiscard]] Vector3 slip(std::size_t k) const { return forces_.now()[k].slip(); }
 
   [[nodiscard]] Choice as_it_moves(std::size_t k) const {
     const Vector3 u = slip(k);

@@ -20,7 +20,7 @@ std::vector<std::size_t> own_places(std::size_t n) {
 }
 /// Of sliding: along the velocity, and where that is hardly any, as it was.
 Vector3 direction(const TouchNow& now, const Vector3& before, double slow) {
-  const Vector3 u = now.velocity - now.normal * now.normal.dot(now.velocity);
+  const Vector3 u = now.slip();
   const double along = before.dot(u);
   const Vector3 d = before * std::max(along, slow) + (u - along * before);
   return (d - now.normal * now.normal.dot(d)).normalized();

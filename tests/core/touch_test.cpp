@@ -114,7 +114,8 @@ auto slope(const F& f, double h) {
 }  // namespace
 
 TEST_CASE("velocities and accelerations of touches are derivatives", "[friction]") {
-  // All pairs of features that touch in one point: balls, planes, edges, sides of capsules, rims.
+  // All pairs of features that touch in one point: balls, planes, edges, sides of capsules, rims,
+  // cones.
   Random random(20261130);
   int elsewhere = 0;
   int asked = 0;

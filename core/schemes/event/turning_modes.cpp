@@ -228,8 +228,7 @@ bool EventModes::slides_roughly(const Turning& turning, double still) {
     const Touch& touch = turning.group.start.touches[k];
     const auto& states = turning.group.start.states;
     if (touch.rough && !turning.mode.forces.force[k].isZero(0.0)) {
-      const TouchNow now = look_at(touch, states[touch.a], states[touch.b]);
-      if ((now.velocity - now.normal * now.normal.dot(now.velocity)).norm() > still) {
+      if (look_at(touch, states[touch.a], states[touch.b]).slip().norm() > still) {
         return true;
       }
     }
