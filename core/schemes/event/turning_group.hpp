@@ -19,7 +19,7 @@ struct TurningLimits {
   /// too slowly.
   static constexpr std::ptrdiff_t most_bodies = 24;
   /// A body that turns has so many steps in a frame at most.
-  static constexpr int most_steps = 3000;
+  static constexpr int most_steps = 10000;
   /// After so many its hops count as rest below half of what counts as touch.
   static constexpr int many_steps = 1000;
   /// Searches for forces that found none are halved so many times at most: to a hundred solves.
