@@ -19,8 +19,9 @@ namespace {
 
 using Does = FrictionChoice::Does;
 
-/// A mode goes on until a force is this much beyond its cone: what follows is then no tie.
-constexpr double guard = 4.0 * turning_roundoff;
+/// A mode goes on until a force is beyond its cone by so many times what is accepted: what follows
+/// is then no tie.
+constexpr double guard = 4.0;
 constexpr int samples = 16;  ///< of what may end the mode, in a step
 constexpr int bisections = 48;
 constexpr int most_halvings = 40;
@@ -237,7 +238,6 @@ class Step {
     }
     const auto found =
         forces.verified(directed(mode_, forces.now(), way_.slow), {.carry = &way_.carry});
-    double beyond = 0.0;
     // What opens may close again: that is a strike, watched by its gap.
     for (std::size_t k = 0; k < state.touches.size(); ++k) {
       const double closing = -forces.gap_acceleration(k, found.accelerations) / forces.load();
@@ -245,8 +245,7 @@ class Step {
         return rim(state) ? TurningEnd::rim : TurningEnd::step;
       }
     }
-    beyond = found.violation;
-    if (beyond > guard) {
+    if (found.violation > guard * found.allowed()) {
       return TurningEnd::forces;
     }
     return rim(state) ? TurningEnd::rim : TurningEnd::step;
@@ -288,10 +287,22 @@ class Step {
     for (int j = 1; j <= samples; ++j) {
       const double hi = step_.duration * j / samples;
       if (ends_at(hi) != TurningEnd::step) {
-        return bisect(lo, hi);
+        return ends_within() ? bisect(lo, hi) : void();
       }
       lo = hi;
     }
+  }
+
+  /// Whether what seems to be the end is: implicit motions are off their gaps, and may turn beyond
+  /// a rim by that. Bent to them they end where they do.
+  bool ends_within() {
+    if (!mode_.implicit) {
+      return true;
+    }
+    (void)bend();
+    TurningState end = way_.touching_at(step_.duration);
+    end.states = step_.states;
+    return rim(end);
   }
 
   void bisect(double lo, double hi) {
