@@ -24,7 +24,9 @@ struct FrictionTouch {
 struct FrictionChoice {
   enum class Does : char { opens, sticks, slides, begins };
   Does does = Does::sticks;
-  Vector3 direction = Vector3::Zero();  ///< of b along a, unit, where it slides or begins to
+  /// Of b along a, unit, where it slides or begins to; where it sticks, the one in which it may be
+  /// at the edge of its cone, or zero.
+  Vector3 direction = Vector3::Zero();
 };
 
 /// Verifies proposals of `friction_mode`: are there accelerations that the touches allow, and

@@ -1,7 +1,6 @@
 #include "core/contacts/turning_forces.hpp"
 
 #include "core/circular.hpp"
-#include "core/contacts/complementarity.hpp"
 #include "core/contacts/least_norm.hpp"
 #include "core/contacts/nonnegative_solve.hpp"
 
@@ -24,27 +23,16 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Pivots below this part of the largest one belong to rows that the others imply.
-constexpr double rank_threshold = 1e-11;
+/// The same of rows that contradict the others by roundoff, and by no more than is accepted.
+constexpr double nearly_implied = 1e-8;
 /// Rays that stand for a cone, one of them along the force that is asked for.
 constexpr int rays_of_cone = 16;
-/// The search for forces ends after so many sweeps, or where they change by less than this part of
-/// the greatest. It only proposes: what is accepted was verified.
-constexpr int most_sweeps = 2000;
-constexpr double settled = 1e-10;
-
-/// What parts by more than this part of the largest load does: less is roundoff of the solve.
-constexpr double opens = 1e-10;
-
 /// Forces that are off by this part of the largest load are what was asked for, as they are where
 /// a mode is found: what ends one is several times as much.
 constexpr double carried = 1e-11;
 
 /// Systems of so many rows are worth the order of a sparse decomposition.
 constexpr Index many = 32;
-
-/// Equations that leave more than this part of the load contradict each other.
-constexpr double contradicts = 1e-9;
 
 /// Solves K x = -q by a decomposition of a damped K for what is left, again and again; false: it
 /// does not get there, and what is left is not as much as equations leave that contradict each
@@ -65,7 +53,7 @@ bool refine(const Decomposition& decomposition, const MatrixXd& K, const VectorX
       break;
     }
   }
-  return off <= solved * load || (off > contradicts * load && std::isfinite(off));
+  return off <= solved * load || (off > turning_contradiction * load && std::isfinite(off));
 }
 
 /// Solves K x = -q, where K may be singular: a damped K is not. It is several times as fast as an
@@ -85,9 +73,6 @@ bool solve_damped(const MatrixXd& K, const VectorXd& q, double load, VectorXd& x
   const Eigen::SparseLU<Eigen::SparseMatrix<double>> decomposition(few);
   return decomposition.info() == Eigen::Success && refine(decomposition, K, q, load, x);
 }
-
-bool pushes(const FrictionChoice& c) { return c.does != Does::opens; }
-bool rubs(const FrictionChoice& c) { return c.does == Does::slides || c.does == Does::begins; }
 
 }  // namespace
 
@@ -243,7 +228,7 @@ TurningForces::Solution TurningForces::solve(std::span<const FrictionChoice> cho
   const bool damped = which == Which::some || (which == Which::some_of_many && n >= many);
   if (!damped || !solve_damped(K, q, load_, x)) {
     Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
-    decomposition.setThreshold(rank_threshold);
+    decomposition.setThreshold(which == Which::nearly_least ? nearly_implied : implied);
     decomposition.compute(K);
     x = decomposition.solve(-q);
     x -= decomposition.solve(K * x + q);
@@ -414,18 +399,30 @@ TurningForces::Solution TurningForces::verified(std::span<const FrictionChoice> 
   Solution found = solve(choices, of_several(Which::some_of_many));
   found.violation = cone_violation(choices, found);
   // Whatever forces are redundant, accelerations are the same.
-  if (const double closes = closing(choices, found); closes > options.most) {
+  if (const double closes = closing(choices, found);
+      closes > std::max(options.most, found.allowed())) {
     found.violation = std::max(found.violation, closes);
     return found;
   }
   std::vector<std::size_t>* const carry = options.carry;
-  const bool as_before = carry != nullptr && is_beyond(found) && found.residual < contradicts &&
+  if (is_beyond(found) && held_at_edges(choices, found, options.carry)) {
+    return found;
+  }
+  const bool as_before = carry != nullptr && is_beyond(found) &&
+                         found.residual < turning_contradiction &&
                          carried_as_before(choices, found, *carry);
   if (!as_before && is_beyond(found) && several()) {
     found = solve(choices);
     found.violation = cone_violation(choices, found);
   }
-  if (!as_before && is_beyond(found) && found.residual < contradicts) {
+  if (!as_before && is_beyond(found)) {
+    Solution other = solve(choices, Which::nearly_least);
+    other.violation = std::max(cone_violation(choices, other), closing(choices, other));
+    if (other.residual < turning_contradiction && other.violation <= other.allowed()) {
+      return other;
+    }
+  }
+  if (!as_before && is_beyond(found) && found.residual < turning_contradiction) {
     Solution other = found;
     const double off = nearest_in_cones(choices, other, carry);
     if (off < found.violation) {
@@ -435,142 +432,6 @@ TurningForces::Solution TurningForces::verified(std::span<const FrictionChoice> 
   }
   found.violation = std::max(found.violation, closing(choices, found));
   return found;
-}
-
-/// One contact of a sweep takes the force that the accelerations by the others ask for.
-void TurningForces::sweep(std::size_t k, const FrictionChoice& as_is, std::array<double, 3>& force,
-                          std::vector<Twist>& v) const {
-  const double mu = state_.touches[k].friction;
-  const double before = force[0];
-  if (weight_[k] == 0.0) {
-    return;  // joints block it
-  }
-  force[0] = std::max(0.0, before - gap_acceleration(k, v) / weight_[k]);
-  push(lines_[k][0], force[0] - before, v);
-  if (mu == 0.0) {
-    return;
-  }
-  std::array<double, 2> wanted{};
-  if (rubs(as_is)) {
-    for (const std::size_t axis : {1U, 2U}) {
-      wanted[axis - 1] = -mu * force[0] * as_is.direction.dot(lines_[k][axis].direction);
-    }
-  } else {
-    const Vector3 slides = acceleration(k, v);
-    for (const std::size_t axis : {1U, 2U}) {
-      const Line& t = lines_[k][axis];
-      const double felt = coupling(t, t);
-      // Where joints block it nothing moves, whatever pushes.
-      wanted[axis - 1] = felt > 0.0 ? force[axis] - slides.dot(t.direction) / felt : 0.0;
-    }
-    const double size = hypotenuse(wanted[0], wanted[1]);
-    const double most = force[0] > 0.0 ? mu * force[0] : 0.0;
-    if (size > most) {
-      wanted[0] *= most / size;
-      wanted[1] *= most / size;
-    }
-  }
-  for (const std::size_t axis : {1U, 2U}) {
-    push(lines_[k][axis], wanted[axis - 1] - force[axis], v);
-    force[axis] = wanted[axis - 1];
-  }
-}
-
-std::vector<FrictionChoice> TurningForces::propose(std::span<const FrictionChoice> as_is) {
-  std::vector<std::array<double, 3>> force(as_is.size(), {0.0, 0.0, 0.0});
-  std::vector<Twist> v = state_.loads;
-  for (int round = 0; round < most_sweeps; ++round) {
-    double changed = 0.0;
-    double most = 0.0;
-    for (std::size_t k = 0; k < as_is.size(); ++k) {
-      const std::array<double, 3> before = force[k];
-      sweep(k, as_is[k], force[k], v);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        changed = std::max(changed, std::abs(force[k][axis] - before[axis]));
-        most = std::max(most, std::abs(force[k][axis]));
-      }
-    }
-    if (changed <= settled * most) {
-      break;
-    }
-  }
-  double most = 0.0;
-  for (const auto& f : force) {
-    most = std::max(most, f[0]);
-  }
-  std::vector<FrictionChoice> choices(as_is.begin(), as_is.end());
-  for (std::size_t k = 0; k < as_is.size(); ++k) {
-    const double mu = state_.touches[k].friction;
-    const double along = hypotenuse(force[k][1], force[k][2]);
-    if (force[k][0] <= 1e-7 * most) {
-      choices[k].does = Does::opens;
-    } else if (choices[k].does == Does::sticks && std::isfinite(mu) &&
-               along >= mu * force[k][0] * (1.0 - 1e-6)) {
-      choices[k].does = Does::begins;
-      const Vector3 f = force[k][1] * lines_[k][1].direction + force[k][2] * lines_[k][2].direction;
-      choices[k].direction = along > 0.0 ? Vector3(-f / along) : Vector3(Vector3::Zero());
-    }
-  }
-  return choices;
-}
-
-std::vector<FrictionChoice> TurningForces::complementary(std::span<const FrictionChoice> as_is) {
-  const std::size_t n = as_is.size();
-  std::vector<char> presses(n, 1);
-  for (std::size_t round = 0; round <= n; ++round) {
-    // Normals first, then the tangents of what is pressed and sticks.
-    std::vector<Line> lines;
-    for (std::size_t k = 0; k < n; ++k) {
-      lines.push_back(lines_[k][0]);
-    }
-    for (std::size_t k = 0; k < n; ++k) {
-      for (const std::size_t axis : {1U, 2U}) {
-        if (presses[k] != 0 && as_is[k].does == Does::sticks) {
-          lines.push_back(lines_[k][axis]);
-        }
-      }
-    }
-    const auto rows = static_cast<Index>(n);
-    const auto all = static_cast<Index>(lines.size());
-    MatrixXd K = couplings(lines, lines);
-    VectorXd q = loads_along(lines);
-    for (std::size_t k = 0; k < n; ++k) {
-      if (weight_[k] == 0.0) {
-        q[static_cast<Index>(k)] = 0.0;  // joints block it: what is left is roundoff
-      }
-    }
-    ++solves_;
-    const Index tangents = all - rows;
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> held;
-    if (tangents > 0) {
-      held.setThreshold(rank_threshold);
-      held.compute(K.bottomRightCorner(tangents, tangents));
-      const MatrixXd of_normals = held.solve(K.bottomLeftCorner(tangents, rows));
-      const VectorXd of_loads = held.solve(q.tail(tangents));
-      q.head(rows) -= K.topRightCorner(rows, tangents) * of_loads;
-      K.topLeftCorner(rows, rows) -= K.topRightCorner(rows, tangents) * of_normals;
-    }
-    const MatrixXd W =
-        0.5 * (K.topLeftCorner(rows, rows) + K.topLeftCorner(rows, rows).transpose());
-    const Complementarity found = solve_complementarity(W, q.head(rows));
-    if (!found.solved) {
-      return {};
-    }
-    const VectorXd parts = W * found.x + q.head(rows);
-    std::vector<FrictionChoice> choices(as_is.begin(), as_is.end());
-    bool changed = false;
-    for (std::size_t k = 0; k < n; ++k) {
-      if (parts[static_cast<Index>(k)] > opens * load_) {
-        choices[k].does = Does::opens;
-        changed = changed || presses[k] != 0;
-        presses[k] = 0;
-      }
-    }
-    if (!changed || tangents == 0) {
-      return choices;
-    }
-  }
-  return {};
 }
 
 }  // namespace core

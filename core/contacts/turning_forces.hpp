@@ -26,6 +26,19 @@ struct TurningState {
   double applied = 0.0;  ///< the largest acceleration that joints took up, m/s^2
 };
 
+/// Forces are inside their cones, and what opens does not close, up to this part of the largest
+/// load: roundoff of the solve.
+inline constexpr double turning_roundoff = 1e-11;
+/// Equations that leave more than this part of it contradict each other.
+inline constexpr double turning_contradiction = 1e-9;
+
+/// The same where equations contradict each other by so much, as rows of touches that others imply
+/// do: forces do not do both. What is let go of the four corners of a face closes by what all four
+/// are off, times what turning adds.
+inline constexpr double allowed_where(double contradicted) {
+  return turning_roundoff + 16.0 * contradicted;
+}
+
 /// Contact forces of bodies that turn: of touches that are told what they do.
 ///
 /// The unknowns are the forces at the touches, and the equations that gaps and what sticks have no
@@ -42,10 +55,14 @@ class TurningForces {
     double violation = 0.0;
     /// Of the equations, in the same units: more than roundoff if they contradict each other.
     double residual = 0.0;
+
+    /// What `violation` may be.
+    [[nodiscard]] double allowed() const { return allowed_where(residual); }
   };
 
   struct Verifying {
-    /// Where what opens closes by more than this forces are not looked for, in units of the load.
+    /// Where what opens closes by more than this, and than what is allowed, forces are not looked
+    /// for, in units of the load.
     double most = std::numeric_limits<double>::infinity();
     /// Which of the rays of the cones carried the load when nearly the same was asked last: they
     /// are tried first, and what carries it now is told. Null: not known.
@@ -62,6 +79,7 @@ class TurningForces {
   /// Which forces are found of those that do the same.
   enum class Which {
     least_norm,
+    nearly_least,  ///< of least norm, where rows that the others nearly imply are left out
     some_of_many,  ///< where many touch some, which is faster, else those of least norm
     some           ///< the fastest to find
   };
@@ -78,8 +96,26 @@ class TurningForces {
   /// norm are not.
   [[nodiscard]] Solution verified(std::span<const FrictionChoice> choices,
                                   const Verifying& options);
+  /// Some forces that do what is proposed, for the accelerations.
+  [[nodiscard]] Solution moved_by(std::span<const FrictionChoice> choices);
+  /// Turns the directions in which touches begin to slide to where they then go, by Newton's
+  /// method; false: it does not get there.
+  [[nodiscard]] bool turn_to_slip(std::vector<FrictionChoice>& choices);
   /// What projected Gauss-Seidel finds likely, from what is known to slide or to stick.
   [[nodiscard]] std::vector<FrictionChoice> propose(std::span<const FrictionChoice> as_it_moves);
+
+  /// The same from forces that were looked for at all touches at once, to the last digits: among
+  /// redundant touches sweeps get there slowly. Empty: they were not found. `halvings`: see
+  /// `ContactSweeps::sweep`.
+  [[nodiscard]] std::vector<FrictionChoice> propose_at_once(
+      std::span<const FrictionChoice> as_it_moves, int halvings);
+
+  /// The same with no more touches than carry the load, where others are redundant: how they share
+  /// it is not known, and where they slide in several directions accelerations depend on it.
+  [[nodiscard]] std::vector<FrictionChoice> fewest(std::span<const FrictionChoice> choices);
+  /// By how much touches that others nearly imply contradict these, in units of the load; 0 where
+  /// it is more than touches that are held may.
+  [[nodiscard]] double contradiction(std::span<const FrictionChoice> choices);
 
   /// What follows where normal forces press and hold, or do not and let go: one complementarity
   /// problem, in which what is pressed and sticks does so whatever that takes, and what slides does
@@ -92,6 +128,16 @@ class TurningForces {
   [[nodiscard]] Vector3 acceleration(std::size_t k, std::span<const Twist> accelerations) const;
 
  private:
+  /// Pivots below this part of the largest one belong to rows that the others imply.
+  static constexpr double implied = 1e-11;
+
+  [[nodiscard]] static bool pushes(const FrictionChoice& c) {
+    return c.does != FrictionChoice::Does::opens;
+  }
+  [[nodiscard]] static bool rubs(const FrictionChoice& c) {
+    return c.does == FrictionChoice::Does::slides || c.does == FrictionChoice::Does::begins;
+  }
+
   using Vector6 = Eigen::Matrix<double, 6, 1>;
   /// A unit force along `direction` at a touch.
   struct Line {
@@ -124,6 +170,16 @@ class TurningForces {
   static void put_forces(const Rays& rays, const Eigen::VectorXd& x, Solution& found);
   [[nodiscard]] double nearest_in_cones(std::span<const FrictionChoice> choices, Solution& found,
                                         std::vector<std::size_t>* carry);
+  /// Of the accelerations of these touches, the part across their directions, of the load.
+  [[nodiscard]] Eigen::VectorXd aside(std::span<const FrictionChoice> choices,
+                                      std::span<const std::size_t> begins);
+  [[nodiscard]] FrictionChoice turned_by(std::size_t touch, const FrictionChoice& choice,
+                                         double angle) const;
+  [[nodiscard]] Eigen::VectorXd angles_to_slip(std::span<const FrictionChoice> choices,
+                                               std::span<const std::size_t> begins,
+                                               const Eigen::VectorXd& across);
+  [[nodiscard]] bool held_at_edges(std::span<const FrictionChoice> choices, Solution& found,
+                                   std::vector<std::size_t>* carry);
   [[nodiscard]] bool carried_as_before(std::span<const FrictionChoice> choices, Solution& found,
                                        const std::vector<std::size_t>& carry);
   void sweep(std::size_t k, const FrictionChoice& as_is, std::array<double, 3>& force,

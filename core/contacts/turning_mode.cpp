@@ -20,13 +20,7 @@ using Choice = FrictionChoice;
 using Does = FrictionChoice::Does;
 using Solution = TurningForces::Solution;
 
-constexpr int most_turns = 30;  ///< of the directions in which something begins to slide
-/// Accelerations of what begins to slide are along it, to this part of the largest load.
-constexpr double aligned = 1e-15;
-constexpr double nearly_aligned = 1e-12;
 constexpr int most_solves = 3000;
-/// Equations that contradict each other by more than this part of the largest load do.
-constexpr double contradiction = 1e-9;
 
 /// A solve costs about the cube of the touches, and of many touches more than two would have to
 /// change: no search takes longer than one of a dozen.
@@ -41,6 +35,7 @@ class Search {
       : state_(state),
         forces_(state),
         still_(still),
+        halvings_(halvings),
         most_solves_(most_solves_of(state.touches.size()) >> halvings) {}
 
   TurningMode result() {
@@ -94,6 +89,7 @@ class Search {
   }
 
   bool search(const std::vector<Choice>& as_is) {
+    contradicted_ = 0.0;
     if (attempt(as_is)) {
       return true;
     }
@@ -103,6 +99,14 @@ class Search {
     }
     if (const std::vector<Choice> pressed = forces_.complementary(as_is);
         !pressed.empty() && attempt(pressed)) {
+      return true;
+    }
+    const std::vector<Choice> at_once = forces_.propose_at_once(as_is, halvings_);
+    if (!at_once.empty() && attempt(at_once)) {
+      return true;
+    }
+    contradicted_ = forces_.contradiction(at_once.empty() ? as_is : at_once);
+    if ((!at_once.empty() && attempt(forces_.fewest(at_once))) || attempt(forces_.fewest(as_is))) {
       return true;
     }
     mode_.searched = true;
@@ -165,49 +169,19 @@ class Search {
     if (!first_directions(choices)) {
       return false;
     }
-    Eigen::VectorXd across = aside(choices, begins);
-    for (int turn = 0; turn < most_turns; ++turn) {
-      if (across.lpNorm<Eigen::Infinity>() <= aligned) {
-        break;
-      }
-      const Eigen::VectorXd step = newton(choices, begins, across);
-      bool better = false;
-      for (double share = 1.0; share > 1e-3 && !better; share *= 0.5) {
-        std::vector<Choice> turned = choices;
-        for (std::size_t j = 0; j < begins.size(); ++j) {
-          turned[begins[j]].direction =
-              turned_by(begins[j], choices, share * step[static_cast<Eigen::Index>(j)]);
-        }
-        const Eigen::VectorXd there = aside(turned, begins);
-        better = there.norm() < across.norm();
-        if (better) {
-          choices = turned;
-          across = there;
-        }
-      }
-      if (!better) {
-        break;
-      }
-    }
-    return across.lpNorm<Eigen::Infinity>() <= nearly_aligned && slides_on(choices, begins) &&
+    return forces_.turn_to_slip(choices) && slides_on(choices, begins) &&
            (sticks_rather(choices, begins) || accept(choices));
   }
 
-  /// For its accelerations, which are the same whatever forces do it.
-  [[nodiscard]] Solution moved_by(const std::vector<Choice>& choices) {
-    return forces_.solve(choices, forces_.of_several(TurningForces::Which::some));
-  }
-
-  /// What begins to slide without an acceleration sticks, where that can be verified: forces may be
-  /// at the edge of a cone because others could take what they do, and slipping would only end, and
-  /// begin again.
+  /// What begins to slide without an acceleration sticks, at the edge of its cone: slipping would
+  /// only end, and begin again.
   bool sticks_rather(std::vector<Choice> choices, const std::vector<std::size_t>& begins) {
-    const Solution found = moved_by(choices);
+    const Solution found = forces_.moved_by(choices);
     bool some = false;
     for (const std::size_t k : begins) {
       if (choices[k].direction.dot(forces_.acceleration(k, found.accelerations)) <=
           turning_roundoff * forces_.load()) {
-        choices[k] = {Does::sticks, Vector3::Zero()};
+        choices[k].does = Does::sticks;
         some = true;
       }
     }
@@ -216,7 +190,7 @@ class Search {
 
   /// Where friction is not known to act against yet: the acceleration without it.
   bool first_directions(std::vector<Choice>& choices) {
-    const Solution found = moved_by(choices);
+    const Solution found = forces_.moved_by(choices);
     for (std::size_t k = 0; k < choices.size(); ++k) {
       if (choices[k].does != Does::begins || !choices[k].direction.isZero(0.0)) {
         continue;
@@ -232,46 +206,9 @@ class Search {
     return true;
   }
 
-  [[nodiscard]] Vector3 turned_by(std::size_t k, const std::vector<Choice>& choices,
-                                  double angle) const {
-    const Vector3& d = choices[k].direction;
-    const Vector3 side = forces_.now()[k].normal.cross(d);
-    return (cosine(angle) * d + sine(angle) * side).normalized();
-  }
-
-  /// Of the accelerations of what begins to slide, the part across its direction, of the load.
-  Eigen::VectorXd aside(const std::vector<Choice>& choices,
-                        const std::vector<std::size_t>& begins) {
-    const Solution found = moved_by(choices);
-    Eigen::VectorXd out(static_cast<Eigen::Index>(begins.size()));
-    for (std::size_t j = 0; j < begins.size(); ++j) {
-      const std::size_t k = begins[j];
-      const Vector3 side = forces_.now()[k].normal.cross(choices[k].direction);
-      out[static_cast<Eigen::Index>(j)] =
-          side.dot(forces_.acceleration(k, found.accelerations)) / forces_.load();
-    }
-    return out;
-  }
-
-  Eigen::VectorXd newton(const std::vector<Choice>& choices, const std::vector<std::size_t>& begins,
-                         const Eigen::VectorXd& across) {
-    constexpr double small = 1e-7;
-    Eigen::MatrixXd slope(across.size(), across.size());
-    for (std::size_t j = 0; j < begins.size(); ++j) {
-      std::vector<Choice> turned = choices;
-      turned[begins[j]].direction = turned_by(begins[j], choices, small);
-      slope.col(static_cast<Eigen::Index>(j)) = (aside(turned, begins) - across) / small;
-    }
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-    decomposition.setThreshold(1e-9);
-    decomposition.compute(slope);
-    const Eigen::VectorXd step = -decomposition.solve(across);
-    return step * std::min(1.0, 1.0 / std::max(step.lpNorm<Eigen::Infinity>(), 1e-300));
-  }
-
   /// Whether nothing slides along its friction.
   bool slides_on(const std::vector<Choice>& choices, const std::vector<std::size_t>& begins) {
-    const Solution found = moved_by(choices);
+    const Solution found = forces_.moved_by(choices);
     return std::all_of(begins.begin(), begins.end(), [&](std::size_t k) {
       return choices[k].direction.dot(forces_.acceleration(k, found.accelerations)) >=
              -turning_roundoff * forces_.load();
@@ -279,8 +216,10 @@ class Search {
   }
 
   bool accept(const std::vector<Choice>& choices) {
-    Solution found = forces_.verified(choices, {.most = turning_roundoff});
-    if (found.residual > contradiction || found.violation > turning_roundoff) {
+    const double most = allowed_where(contradicted_);
+    Solution found = forces_.verified(choices, {.most = most});
+    if (found.residual > turning_contradiction ||
+        found.violation > std::max(most, found.allowed())) {
       return false;
     }
     mode_.flies = std::all_of(choices.begin(), choices.end(),
@@ -316,8 +255,10 @@ class Search {
   const TurningState& state_;
   TurningForces forces_;
   double still_;
-  int most_solves_;  ///< of each search
-  int most_ = 0;     ///< solves at which this one ends
+  int halvings_;
+  int most_solves_;            ///< of each search
+  int most_ = 0;               ///< solves at which this one ends
+  double contradicted_ = 0.0;  ///< by touches that others imply, in units of the load
   TurningMode mode_;
 };
 

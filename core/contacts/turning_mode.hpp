@@ -28,15 +28,12 @@ struct TurningMode {
   int solves = 0;
 };
 
-/// Forces are inside their cones, and what opens does not close, up to this part of the largest
-/// load: roundoff of the solve.
-inline constexpr double turning_roundoff = 1e-11;
-
 /// Proposes what each touch does (opens, sticks, slides) and accepts what was verified: first that
-/// all go on as they move, then what projected Gauss-Seidel finds likely, then what differs from
-/// either in one touch or two. All touches are at rest along their normals. `still`: what slides
-/// slower than this, m/s, is taken to stick or to begin to slide. `halvings`: the most changes that
-/// are tried are halved so many times.
+/// all go on as they move, then what projected Gauss-Seidel finds likely, then what forces tell
+/// that were looked for at all touches at once, of as few of them as carry the load, then what
+/// differs from the first two in one touch or two. All touches are at rest along their normals.
+/// `still`: what slides slower than this, m/s, is taken to stick or to begin to slide. `halvings`:
+/// the most changes that are tried are halved so many times.
 [[nodiscard]] TurningMode turning_mode(const TurningState& state, double still, int halvings = 0);
 
 /// What bodies do that nothing moves and that move all the same, while such impulses press on them,
