@@ -63,26 +63,36 @@ constexpr double across_an_edge = 1e-6;
 /// where two of them touch at hardly any distance their normal is known only so well.
 constexpr double near_side = 1e-3;
 
-/// Whether a point of the surface is on a rim.
-bool is_at_rim(const TouchFeature& rim, const Vector3& x) {
+/// Whether a point of the surface is on a rim: as far from its axis, to this part of its size.
+bool is_at_rim(const TouchFeature& rim, const Vector3& x, double near = near_vertex) {
   const double size = rim.radius + std::abs(rim.at.y());
   return std::abs(x.y() - rim.at.y()) <= near_vertex * size &&
-         std::abs(Vector3(x.x(), 0.0, x.z()).norm() - rim.radius) <= near_vertex * size;
+         std::abs(Vector3(x.x(), 0.0, x.z()).norm() - rim.radius) <= near * size;
+}
+
+/// Tilted by less than this, rad, flat ends lie flat.
+constexpr double lies_flat = 1e-8;
+
+/// Whether a flat end looks there, as good as exactly.
+bool is_flat_end(const Shape& shape, const Vector3& outward) {
+  return !rims_of_shape(shape).empty() &&
+         Vector3(outward.x(), 0.0, outward.z()).norm() < lies_flat &&
+         (std::holds_alternative<Cylinder>(shape) || outward.y() < 0.0);
 }
 
 /// The rim that a point of the surface (body frame) is on, where it is tilted from what it touches
 /// and the point is the lowest: of one that lies flat no point touches alone.
 std::optional<TouchFeature> rim_feature(const Shape& shape, const Vector3& x,
                                         const Vector3& outward) {
-  constexpr double flat = 1e-8;    // rad
   constexpr double lowest = 0.98;  // others are as far from it as corners of a polygon
+  constexpr double near = 1e-5;    // what hardly tilts from it tells the place only so well
   const Vector3 slope(outward.x(), 0.0, outward.z());
   const Vector3 from_axis(x.x(), 0.0, x.z());
-  if (slope.norm() < flat || slope.dot(from_axis) < lowest * slope.norm() * from_axis.norm()) {
+  if (slope.norm() < lies_flat || slope.dot(from_axis) < lowest * slope.norm() * from_axis.norm()) {
     return std::nullopt;
   }
   for (const TouchFeature& rim : rims_of_shape(shape)) {
-    if (is_at_rim(rim, x)) {
+    if (is_at_rim(rim, x, near)) {
       return rim;
     }
   }
@@ -221,17 +231,14 @@ std::optional<TouchFeature> curve_feature(const Shape& shape, const Vector3& x,
   return curve;
 }
 
-/// What crosses at a point of the surfaces, edges, round sides or rims, none of whose corners is
-/// there; nothing where they are nearly parallel: where they cross then runs away. The normal may
-/// be that of a face, from which what crosses at its rim is tilted: it is what touches if it
-/// separates the two.
-std::optional<Touch> crossing(const Shape& shape_a, const Pose& a, const Vector3& on_a,
-                              const Shape& shape_b, const Pose& b, const Vector3& on_b,
-                              const Vector3& n) {
+/// The touch of two curves that cross; nothing where they are nearly parallel: where they cross
+/// then runs away. The normal may be that of a face, from which what crosses at its rim is tilted:
+/// it is what touches if it separates the two.
+std::optional<Touch> crossing_of(const std::optional<TouchFeature>& curve_a,
+                                 const std::optional<TouchFeature>& curve_b, const Shape& shape_a,
+                                 const Pose& a, const Shape& shape_b, const Pose& b,
+                                 const Vector3& n) {
   constexpr double nearly_parallel = 1e-3;
-  constexpr double most_tilted = 0.3;
-  const auto curve_a = curve_feature(shape_a, on_a, a.orientation.conjugate() * n, most_tilted);
-  const auto curve_b = curve_feature(shape_b, on_b, b.orientation.conjugate() * -n, most_tilted);
   if (!curve_a || !curve_b || (curve_a->kind == Kind::cone && curve_b->kind == Kind::cone)) {
     return std::nullopt;
   }
@@ -255,6 +262,32 @@ std::optional<Touch> crossing(const Shape& shape_a, const Pose& a, const Vector3
     return std::nullopt;
   }
   return touch;
+}
+
+/// What crosses at a point of the surfaces, edges, round sides or rims, none of whose corners is
+/// there. Rims beside each other in one plane do not: there the one is on the side of the other.
+std::optional<Touch> crossing(const Shape& shape_a, const Pose& a, const Vector3& on_a,
+                              const Shape& shape_b, const Pose& b, const Vector3& on_b,
+                              const Vector3& n) {
+  constexpr double most_tilted = 0.3;
+  const Vector3 n_A = a.orientation.conjugate() * n;
+  const Vector3 n_B = b.orientation.conjugate() * n;
+  const auto curve_a = curve_feature(shape_a, on_a, n_A, most_tilted);
+  const auto curve_b = curve_feature(shape_b, on_b, -n_B, most_tilted);
+  auto touch = crossing_of(curve_a, curve_b, shape_a, a, shape_b, b, n);
+  const bool rims = curve_a && curve_b && curve_a->kind == Kind::rim && curve_b->kind == Kind::rim;
+  if (touch || !rims) {
+    return touch;
+  }
+  const auto side = [](const Shape& shape, const Vector3& x, const Vector3& outward) {
+    auto line = line_feature(shape, x, outward, most_tilted);
+    if (line) {
+      line->near = x;
+    }
+    return line;
+  };
+  touch = crossing_of(curve_a, side(shape_b, on_b, -n_B), shape_a, a, shape_b, b, n);
+  return touch ? touch : crossing_of(side(shape_a, on_a, n_A), curve_b, shape_a, a, shape_b, b, n);
 }
 
 /// Whether a feature is that of a ball, which is round.
@@ -367,6 +400,19 @@ std::optional<Touch> touch_at(const ContactManifold& manifold, std::size_t point
     if (has_normal(touch, a, b)) {
       return touch;
     }
+  }
+  // A rim at the rim of the other, which is as good as flat. Where both are, the place is held.
+  const auto rim_a = rim_feature(shape_a, on_a, n_A);
+  const auto rim_b = rim_feature(shape_b, on_b, -n_B);
+  if ((rim_a || is_flat_end(shape_a, n_A)) && is_flat_end(shape_b, -n_B)) {
+    touch.on_a = rim_a.value_or(TouchFeature{Kind::ball, on_a, Vector3::Zero(), 0.0});
+    touch.on_b = face_feature(shape_b, on_b, -n_B);
+    return touch;
+  }
+  if (rim_b && is_flat_end(shape_a, n_A)) {
+    touch.on_a = face_feature(shape_a, on_a, n_A);
+    touch.on_b = *rim_b;
+    return touch;
   }
   if (auto curves = crossing(shape_a, a, on_a, shape_b, b, on_b, n)) {
     return curves;

@@ -1,6 +1,9 @@
 // Cylinders and cones that roll and turn on faces, against closed forms.
 
+#include "core/contacts/touch.hpp"
+#include "core/random.hpp"
 #include "core/reading/scene_reader.hpp"
+#include "simulation/registry.hpp"
 #include "simulation/simulate.hpp"
 #include "tests/catch.hpp"
 #include "tests/simulation/whole_run.hpp"
@@ -357,6 +360,41 @@ TEST_CASE("rims: a rough cylinder that spins stops by an impulse, and rolls", "[
 
 // Random scenes that stopped: a can that is struck and goes down flat, a rough coin that is thrown
 // up as its other side lands, a cone on its side over the edge of a slab.
+TEST_CASE("rims: of coins that hardly tilt on each other it is known where they touch", "[rims]") {
+  const std::uint64_t seed = 20261130;
+  CAPTURE(seed);
+  Random random(seed);
+  const auto detector = find_detector("certified");
+  constexpr double gap = 1e-11;
+  for (int round = 0; round < 400; ++round) {
+    CAPTURE(round);
+    const Cylinder lower{random.uniform(0.05, 0.2), random.uniform(0.01, 0.1)};
+    const Cylinder upper{random.uniform(0.05, 0.2), random.uniform(0.01, 0.1)};
+    const auto turned = [&] {
+      const double tilt = std::pow(10.0, random.uniform(-10.0, -3.0));
+      const double where = random.uniform(0.0, 6.3);
+      return Quaternion(Eigen::AngleAxisd(tilt, Vector3(std::cos(where), 0.0, std::sin(where))));
+    };
+    Pose below;
+    below.orientation = turned();
+    Pose above;
+    above.orientation = turned();
+    // Each is beside the middle of the other: rims cross.
+    const double beside = random.uniform(0.3, 0.9) * (lower.radius + upper.radius);
+    const double where = random.uniform(0.0, 6.3);
+    above.position = Vector3(beside * std::cos(where), 0.2, beside * std::sin(where));
+    for (int k = 0; k < 8; ++k) {
+      const Overlap apart = detector->overlap(lower, below, upper, above);
+      above.position.y() -= apart.gap - 0.5 * gap;
+    }
+    const ContactManifold manifold = detector->manifold(lower, below, upper, above, gap);
+    REQUIRE(manifold.size > 0);
+    for (std::size_t k = 0; k < manifold.size; ++k) {
+      CHECK(touch_at(manifold, k, lower, below, upper, above));
+    }
+  }
+}
+
 TEST_CASE("rims: what stopped once", "[turning][rims]") {
   const std::string can_and_ball =
       head(2.0, "0.5", half_space) +

@@ -16,9 +16,8 @@ inline namespace core {
 
 /// What a person can do about bodies that stay in touch: the end of a stop's reason.
 inline constexpr std::string_view lasting_contact_advice =
-    "event-driven keeps in touch what does not turn, and balls, capsules, boxes, hulls, cylinders, "
-    "cones, compounds and meshes that do; allowed: another shape, another scheme (--scheme), or a "
-    "run that ends before (--duration)";
+    "allowed: shorter frames (--frame), another scheme (--scheme), or a run that ends before "
+    "(--duration)";
 
 /// What the parts of an event-driven run share besides what every run has: what is due, how far
 /// predictions go, and how much work is left.
