@@ -168,11 +168,12 @@ bool EventContacts::settle_stalled(std::span<const BodyIndex> seeds, Instant t) 
 }
 
 /// The same of two that are held by nobody, or they are left alone; this first where it was settled
-/// in vain, turned as well.
+/// in vain, turned as well, and in the end this alone.
 bool EventContacts::go_on_stalled(BodyIndex a, BodyIndex b, Instant t) {
   const std::array<BodyIndex, 2> pair{a, b};
   const bool in_vain = stalled_at_ == t && stalled_ > 2 * most_in_vain;
-  return (in_vain && leave_alone(a, b, t)) || settle_stalled(pair, t) ||
+  const bool at_an_end = stalled_at_ == t && stalled_ > 4 * most_in_vain;
+  return (in_vain && leave_alone(a, b, t)) || (!at_an_end && settle_stalled(pair, t)) ||
          (!in_vain && leave_alone(a, b, t));
 }
 
