@@ -165,9 +165,8 @@ void EventContacts::impact(BodyIndex a, BodyIndex b, Instant t, double bracket, 
     // A body that continues as another image must be launched before it is asked about again.
     return moved ? relaunch(a, b, t) : look_again(a, b, t, bracket);
   }
-  // What flies and is struck again and again may be struck by the roundoff of speeds, without end.
-  const bool flies = !modes_.holds(a) && !modes_.holds(b);
-  const double none = flies && accumulation_.creep(a, b) ? roundoff(event.contact, a, b) : 0.0;
+  // What is struck again and again may be struck by the roundoff of speeds, without end.
+  const double none = accumulation_.creep(a, b) ? roundoff(event.contact, a, b) : 0.0;
   if (approach >= -none && run_.law.info().needs_contact) {
     return touch(a, b, event.contact, t, bracket);
   }
