@@ -89,8 +89,11 @@ class Books {
     const auto choices = directed(way_.mode, touches, way_.slow);
     // Of forces that are redundant those inside their cones rub.
     const std::vector<Vector3> force =
-        way_.mode.implicit ? carried_forces(way_.group, way_.mode, touches)
-                           : TurningForces(state).verified(choices, {.carry = &way_.carry}).force;
+        way_.mode.implicit
+            ? carried_forces(way_.group, way_.mode, touches)
+            : TurningForces(state)
+                  .verified(choices, {.nearly = way_.mode.forces.nearly, .carry = &way_.carry})
+                  .force;
     for (std::size_t k = 0; k < state.touches.size(); ++k) {
       const Touch& touch = state.touches[k];
       const TouchNow& now = touches[k];

@@ -20,8 +20,6 @@ constexpr int most_turns = 30;
 /// Accelerations of what begins to slide are along it, to this part of the largest load.
 constexpr double aligned = 1e-15;
 constexpr double nearly_aligned = 1e-12;
-/// Slip that is less than this part of the largest load is none.
-constexpr double stays = 1e-11;
 
 }  // namespace
 
@@ -118,7 +116,8 @@ bool TurningForces::held_at_edges(std::span<const FrictionChoice> choices, Solut
   if (at_edge.empty()) {
     return false;
   }
-  if (!(aside(edges, at_edge).lpNorm<Eigen::Infinity>() <= stays) && !turn_to_slip(edges)) {
+  if (!(aside(edges, at_edge).lpNorm<Eigen::Infinity>() <= turning_roundoff) &&
+      !turn_to_slip(edges)) {
     return false;
   }
   const Solution there = verified(edges, {.carry = carry});
@@ -128,7 +127,7 @@ bool TurningForces::held_at_edges(std::span<const FrictionChoice> choices, Solut
     const Vector3 slips = acceleration(k, there.accelerations);
     beyond = std::max(beyond, (slips - n * n.dot(slips)).norm() / load_);
   }
-  if (!(beyond <= stays)) {
+  if (!(beyond <= turning_roundoff)) {
     return false;
   }
   found.force = there.force;

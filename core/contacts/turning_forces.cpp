@@ -127,6 +127,18 @@ TurningForces::Line TurningForces::line(std::size_t k, const Vector3& d) const {
   return out;
 }
 
+TurningForces::Line TurningForces::pressing_line(std::size_t k,
+                                                 const FrictionChoice& choice) const {
+  const double mu = state_.touches[k].friction;
+  if (!rubs(choice) || !(mu > 0.0) || choice.direction.isZero(0.0)) {
+    return lines_[k][0];
+  }
+  // What stands for infinite friction is solved for as a force, and not as the normal force that it
+  // takes: the equations would be as far apart as the two are.
+  const double unit = state_.touches[k].rough ? 1.0 / hypotenuse(1.0, mu) : 1.0;
+  return line(k, unit * (now_[k].normal - mu * choice.direction));
+}
+
 MatrixXd TurningForces::couplings(std::span<const Line> asks, std::span<const Line> gives) const {
   MatrixXd K(static_cast<Index>(asks.size()), static_cast<Index>(gives.size()));
   for (Index r = 0; r < K.rows(); ++r) {
@@ -199,14 +211,8 @@ TurningForces::Solution TurningForces::solve(std::span<const FrictionChoice> cho
     if (!pushes(choices[k])) {
       continue;
     }
-    const double mu = state_.touches[k].friction;
-    const bool leans = rubs(choices[k]) && mu > 0.0 && !choices[k].direction.isZero(0.0);
     asks.push_back(lines_[k][0]);
-    // What stands for infinite friction is solved for as a force, and not as the normal force that
-    // it takes: the equations would be as far apart as the two are.
-    const double unit = state_.touches[k].rough ? 1.0 / hypotenuse(1.0, mu) : 1.0;
-    gives.push_back(leans ? line(k, unit * (now_[k].normal - mu * choices[k].direction))
-                          : lines_[k][0]);
+    gives.push_back(pressing_line(k, choices[k]));
     if (choices[k].does == Does::sticks) {
       for (const std::size_t axis : {1U, 2U}) {
         asks.push_back(lines_[k][axis]);
@@ -220,6 +226,7 @@ TurningForces::Solution TurningForces::solve(std::span<const FrictionChoice> cho
   Solution found;
   found.force.assign(choices.size(), Vector3::Zero());
   found.accelerations = state_.loads;
+  found.nearly = which == Which::nearly_least;
   if (n == 0) {
     return found;
   }
@@ -396,9 +403,9 @@ TurningForces::Solution TurningForces::verified(std::span<const FrictionChoice> 
   const auto is_beyond = [](const Solution& s) {
     return s.violation > FrictionForces::solve_roundoff;
   };
-  Solution found = solve(choices, of_several(Which::some_of_many));
+  const bool nearly = options.nearly;
+  Solution found = solve(choices, nearly ? Which::nearly_least : of_several(Which::some_of_many));
   found.violation = cone_violation(choices, found);
-  // Whatever forces are redundant, accelerations are the same.
   if (const double closes = closing(choices, found);
       closes > std::max(options.most, found.allowed())) {
     found.violation = std::max(found.violation, closes);
@@ -411,11 +418,11 @@ TurningForces::Solution TurningForces::verified(std::span<const FrictionChoice> 
   const bool as_before = carry != nullptr && is_beyond(found) &&
                          found.residual < turning_contradiction &&
                          carried_as_before(choices, found, *carry);
-  if (!as_before && is_beyond(found) && several()) {
+  if (!as_before && !nearly && is_beyond(found) && several()) {
     found = solve(choices);
     found.violation = cone_violation(choices, found);
   }
-  if (!as_before && is_beyond(found)) {
+  if (!as_before && !nearly && is_beyond(found)) {
     Solution other = solve(choices, Which::nearly_least);
     other.violation = std::max(cone_violation(choices, other), closing(choices, other));
     if (other.residual < turning_contradiction && other.violation <= other.allowed()) {

@@ -44,7 +44,7 @@ inline constexpr double allowed_where(double contradicted) {
 /// The unknowns are the forces at the touches, and the equations that gaps and what sticks have no
 /// acceleration (index reduction); sliding friction follows from the normal force. Where touches
 /// are redundant (an edge that sticks) the forces are those of least norm; accelerations do not
-/// depend on that.
+/// depend on that, but where these slide in several directions.
 class TurningForces {
  public:
   struct Solution {
@@ -55,12 +55,16 @@ class TurningForces {
     double violation = 0.0;
     /// Of the equations, in the same units: more than roundoff if they contradict each other.
     double residual = 0.0;
+    /// Rows that the others nearly imply were left out: among redundant touches that slide
+    /// accelerations depend on that, and go on so.
+    bool nearly = false;
 
     /// What `violation` may be.
     [[nodiscard]] double allowed() const { return allowed_where(residual); }
   };
 
   struct Verifying {
+    bool nearly = false;  ///< see `Solution`
     /// Where what opens closes by more than this, and than what is allowed, forces are not looked
     /// for, in units of the load.
     double most = std::numeric_limits<double>::infinity();
@@ -149,6 +153,8 @@ class TurningForces {
     Eigen::VectorXd to_all{};
   };
   [[nodiscard]] Line line(std::size_t touch, const Vector3& direction) const;
+  /// Along which a touch presses: what slides along its friction as well.
+  [[nodiscard]] Line pressing_line(std::size_t touch, const FrictionChoice& choice) const;
   [[nodiscard]] double coupling(const Line& asks, const Line& gives) const;
   [[nodiscard]] Eigen::MatrixXd couplings(std::span<const Line> asks,
                                           std::span<const Line> gives) const;

@@ -27,11 +27,10 @@ class ContactForce final : public Force {
     }
     const TurningState state = turning_state(group_, t, bodies);
     TurningForces forces(state);
-    add_all(state, forces.now(),
-            forces
-                .solve(directed(mode_, forces.now(), slow_),
-                       forces.of_several(TurningForces::Which::some_of_many))
-                .force,
+    using Which = TurningForces::Which;
+    const Which which =
+        mode_.forces.nearly ? Which::nearly_least : forces.of_several(Which::some_of_many);
+    add_all(state, forces.now(), forces.solve(directed(mode_, forces.now(), slow_), which).force,
             wrenches);
   }
   [[nodiscard]] double potential(Instant, std::span<const BodyState>) const override { return 0.0; }

@@ -179,10 +179,8 @@ std::vector<FrictionChoice> TurningForces::fewest(std::span<const FrictionChoice
     if (!pushes(choices[k])) {
       continue;
     }
-    const double mu = state_.touches[k].friction;
-    const bool leans = rubs(choices[k]) && mu > 0.0 && !choices[k].direction.isZero(0.0);
     asks.push_back(lines_[k][0]);
-    presses.push_back(leans ? line(k, now_[k].normal - mu * choices[k].direction) : lines_[k][0]);
+    presses.push_back(pressing_line(k, choices[k]));
     if (choices[k].does == Does::sticks) {
       for (const std::size_t axis : {1U, 2U}) {
         asks.push_back(lines_[k][axis]);

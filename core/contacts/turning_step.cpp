@@ -236,8 +236,8 @@ class Step {
         return TurningEnd::forces;
       }
     }
-    const auto found =
-        forces.verified(directed(mode_, forces.now(), way_.slow), {.carry = &way_.carry});
+    const auto found = forces.verified(directed(mode_, forces.now(), way_.slow),
+                                       {.nearly = mode_.forces.nearly, .carry = &way_.carry});
     // What opens may close again: that is a strike, watched by its gap.
     for (std::size_t k = 0; k < state.touches.size(); ++k) {
       const double closing = -forces.gap_acceleration(k, found.accelerations) / forces.load();
@@ -300,6 +300,7 @@ class Step {
       return true;
     }
     (void)bend();
+    step_.refusal.clear();  // it is bent again where it ends
     TurningState end = way_.touching_at(step_.duration);
     end.states = step_.states;
     return rim(end);

@@ -358,8 +358,6 @@ TEST_CASE("rims: a rough cylinder that spins stops by an impulse, and rolls", "[
   }
 }
 
-// Random scenes that stopped: a can that is struck and goes down flat, a rough coin that is thrown
-// up as its other side lands, a cone on its side over the edge of a slab.
 TEST_CASE("rims: of coins that hardly tilt on each other it is known where they touch", "[rims]") {
   const std::uint64_t seed = 20261130;
   CAPTURE(seed);
@@ -395,6 +393,8 @@ TEST_CASE("rims: of coins that hardly tilt on each other it is known where they 
   }
 }
 
+// Random scenes that stopped: a can that is struck and goes down flat, a rough coin that is thrown
+// up as its other side lands, a cone on its side over the edge of a slab.
 TEST_CASE("rims: what stopped once", "[turning][rims]") {
   const std::string can_and_ball =
       head(2.0, "0.5", half_space) +

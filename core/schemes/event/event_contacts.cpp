@@ -171,10 +171,13 @@ bool EventContacts::settle_stalled(std::span<const BodyIndex> seeds, Instant t) 
 /// in vain, turned as well, and in the end this alone.
 bool EventContacts::go_on_stalled(BodyIndex a, BodyIndex b, Instant t) {
   const std::array<BodyIndex, 2> pair{a, b};
-  const bool in_vain = stalled_at_ == t && stalled_ > 2 * most_in_vain;
-  const bool at_an_end = stalled_at_ == t && stalled_ > 4 * most_in_vain;
-  return (in_vain && leave_alone(a, b, t)) || (!at_an_end && settle_stalled(pair, t)) ||
-         (!in_vain && leave_alone(a, b, t));
+  const int settled = stalled_at_ == t ? stalled_ : 0;
+  const bool first_alone = settled > 2 * most_in_vain;
+  if (first_alone && leave_alone(a, b, t)) {
+    return true;
+  }
+  return (settled <= 4 * most_in_vain && settle_stalled(pair, t)) ||
+         (!first_alone && leave_alone(a, b, t));
 }
 
 /// The same before a run would stop.
