@@ -231,14 +231,17 @@ std::optional<TouchFeature> curve_feature(const Shape& shape, const Vector3& x,
   return curve;
 }
 
-/// The touch of two curves that cross; nothing where they are nearly parallel: where they cross
-/// then runs away. The normal may be that of a face, from which what crosses at its rim is tilted:
-/// it is what touches if it separates the two.
-std::optional<Touch> crossing_of(const std::optional<TouchFeature>& curve_a,
-                                 const std::optional<TouchFeature>& curve_b, const Shape& shape_a,
-                                 const Pose& a, const Shape& shape_b, const Pose& b,
-                                 const Vector3& n) {
+/// What crosses at a point of the surfaces, edges, round sides or rims, none of whose corners is
+/// there; nothing where they are nearly parallel: where they cross then runs away. The normal may
+/// be that of a face, from which what crosses at its rim is tilted: it is what touches if it
+/// separates the two.
+std::optional<Touch> crossing(const Shape& shape_a, const Pose& a, const Vector3& on_a,
+                              const Shape& shape_b, const Pose& b, const Vector3& on_b,
+                              const Vector3& n) {
   constexpr double nearly_parallel = 1e-3;
+  constexpr double most_tilted = 0.3;
+  const auto curve_a = curve_feature(shape_a, on_a, a.orientation.conjugate() * n, most_tilted);
+  const auto curve_b = curve_feature(shape_b, on_b, b.orientation.conjugate() * -n, most_tilted);
   if (!curve_a || !curve_b || (curve_a->kind == Kind::cone && curve_b->kind == Kind::cone)) {
     return std::nullopt;
   }
@@ -262,32 +265,6 @@ std::optional<Touch> crossing_of(const std::optional<TouchFeature>& curve_a,
     return std::nullopt;
   }
   return touch;
-}
-
-/// What crosses at a point of the surfaces, edges, round sides or rims, none of whose corners is
-/// there. Rims beside each other in one plane do not: there the one is on the side of the other.
-std::optional<Touch> crossing(const Shape& shape_a, const Pose& a, const Vector3& on_a,
-                              const Shape& shape_b, const Pose& b, const Vector3& on_b,
-                              const Vector3& n) {
-  constexpr double most_tilted = 0.3;
-  const Vector3 n_A = a.orientation.conjugate() * n;
-  const Vector3 n_B = b.orientation.conjugate() * n;
-  const auto curve_a = curve_feature(shape_a, on_a, n_A, most_tilted);
-  const auto curve_b = curve_feature(shape_b, on_b, -n_B, most_tilted);
-  auto touch = crossing_of(curve_a, curve_b, shape_a, a, shape_b, b, n);
-  const bool rims = curve_a && curve_b && curve_a->kind == Kind::rim && curve_b->kind == Kind::rim;
-  if (touch || !rims) {
-    return touch;
-  }
-  const auto side = [](const Shape& shape, const Vector3& x, const Vector3& outward) {
-    auto line = line_feature(shape, x, outward, most_tilted);
-    if (line) {
-      line->near = x;
-    }
-    return line;
-  };
-  touch = crossing_of(curve_a, side(shape_b, on_b, -n_B), shape_a, a, shape_b, b, n);
-  return touch ? touch : crossing_of(side(shape_a, on_a, n_A), curve_b, shape_a, a, shape_b, b, n);
 }
 
 /// Whether a feature is that of a ball, which is round.
