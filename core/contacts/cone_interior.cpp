@@ -330,7 +330,8 @@ ConeImpulses polished(const ConeProblem& problem, const ConeProjections& project
     }
     return nearer;
   };
-  const double compliance = proximal * problem.W.diagonal().mean();
+  const VectorXd compliance =
+      VectorXd::Constant(problem.q.size(), proximal * problem.W.diagonal().mean());
   for (int round = 0; round < most_rounds && nearest.off > settled; ++round) {
     if (round > 0 || problem.roots.empty()) {
       take(nearest.impulse - projections.newton_step(nearest.impulse));

@@ -4,9 +4,12 @@
 #include "core/contacts/least_norm.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <initializer_list>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace kairos {
@@ -27,6 +30,11 @@ constexpr double solved = 1e-2;
 constexpr int most_rounds = 30;
 /// So many that Newton's method does not solve get nowhere.
 constexpr int most_unsolved = 3;
+/// `cone_compliant`: the compliance as a part of what each touch feels by itself, those that lead
+/// there where Newton's method goes round in a circle, and how many problems there are.
+constexpr double least_part = 1e-7;
+constexpr std::array leading_parts = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, least_part};
+constexpr int most_compliant = 3;
 /// See `AtOnce::bounded`.
 constexpr double nearly_rough = 100.0;
 
@@ -74,7 +82,7 @@ ConeImpulses cone_proximal(const ConeProblem& problem, const VectorXd& begin, do
   ConeImpulses nearest{begin, off(begin)};
   VectorXd p = VectorXd::Zero(begin.size());
   double here = off(p);
-  double compliance = first_compliance * scale;
+  VectorXd compliance = VectorXd::Constant(p.size(), first_compliance * scale);
   for (int round = 0, unsolved = 0;
        round < most_rounds && unsolved < most_unsolved && nearest.off > settled; ++round) {
     const ConeImpulses found = newton_from({Start::given, Start::nothing},
@@ -96,12 +104,52 @@ ConeImpulses cone_proximal(const ConeProblem& problem, const VectorXd& begin, do
   return nearest;
 }
 
+ConeImpulses cone_compliant(const ConeProblem& problem, const VectorXd& begin, double settled) {
+  const ConeProjections projections(problem);
+  ConeImpulses nearest{begin, infinity};
+  VectorXd felt(begin.size());
+  for (Eigen::Index at = 0; at < begin.size(); at += 3) {
+    felt.segment<3>(at).setConstant(problem.W.diagonal().segment<3>(at).maxCoeff());
+  }
+  VectorXd p = VectorXd::Zero(begin.size());
+  for (int round = 0; round < most_compliant && !(nearest.off <= settled); ++round) {
+    const auto solve = [&](double part, const VectorXd& from) {
+      return newton_from({Start::given}, held_near(problem, p, part * felt), from, settled);
+    };
+    ConeImpulses found = solve(least_part, round == 0 ? begin : p);
+    if (!(found.off <= settled) && round == 0) {
+      found = {begin, 0.0};
+      for (std::size_t i = 0; i < leading_parts.size() && found.off <= settled; ++i) {
+        found = solve(leading_parts[i], found.impulse);
+      }
+    }
+    if (!(found.off <= settled)) {
+      break;
+    }
+    p = std::move(found.impulse);
+    const double off = projections.off(p).lpNorm<Eigen::Infinity>();
+    if (off < nearest.off) {
+      nearest = {p, off};
+    }
+  }
+  if (std::isfinite(nearest.off)) {
+    projections.make_exact(nearest);
+  }
+  return nearest;
+}
+
 ConeImpulses cone_at_once(const ConeProblem& problem, const VectorXd& begin, double settled,
                           AtOnce way) {
   const auto is_rough = [](double mu) { return std::isinf(mu); };
   const bool rough = std::any_of(problem.friction.begin(), problem.friction.end(), is_rough);
   if (way == AtOnce::newton && problem.friction.size() <= most_for_newton) {
     return cone_newton(problem, begin, settled);
+  }
+  if (way == AtOnce::compliant) {
+    const ConeImpulses found = problem.friction.size() <= most_for_newton
+                                   ? cone_newton(problem, begin, settled)
+                                   : ConeImpulses{begin, infinity};
+    return found.off <= settled ? found : cone_compliant(problem, begin, settled);
   }
   if (way == AtOnce::interior) {
     return cone_interior(problem, begin, settled);

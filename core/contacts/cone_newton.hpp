@@ -27,6 +27,15 @@ inline namespace core {
 [[nodiscard]] ConeImpulses cone_proximal(const ConeProblem& problem, const Eigen::VectorXd& begin,
                                          double settled);
 
+/// The same with one small compliance from the start, 1e-7 of what each touch feels by itself, and
+/// as against no impulses: redundant touches share alike, and what they contradict each other by,
+/// as roundoff of where they are does, asks for no more than the compliance bounds, and is left in
+/// `off`. Where Newton's method goes round in a circle, larger compliances lead there. What the
+/// compliance itself leaves, problems near the impulses so far take away, three at most.
+/// @returns those to begin with, and infinity for what they are off, where that is not solved
+[[nodiscard]] ConeImpulses cone_compliant(const ConeProblem& problem, const Eigen::VectorXd& begin,
+                                          double settled);
+
 /// Newton's method alone pays with so many touches at most, proximal points with so many, and any
 /// of this with so many.
 constexpr std::size_t most_for_newton = 32;
@@ -36,6 +45,7 @@ constexpr std::size_t most_at_once = 160;
 enum class AtOnce {
   newton,      ///< Newton's method, where touches are few
   interior,    ///< `cone_interior`
+  compliant,   ///< Newton's method, where touches are few, and then `cone_compliant`
   proximal,    ///< the proximal points
   bounded,     ///< these with friction of 100 where touches are rough, as what is hardly pressed
                ///< and has no bound may be held by nothing at all

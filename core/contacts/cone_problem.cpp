@@ -23,11 +23,12 @@ Eigen::Index place(std::size_t k) { return 3 * static_cast<Eigen::Index>(k); }
 
 }  // namespace
 
-ConeProblem held_near(const ConeProblem& problem, const VectorXd& p, double compliance) {
+ConeProblem held_near(const ConeProblem& problem, const VectorXd& p, const VectorXd& compliance) {
   ConeProblem held = problem;
-  held.W.diagonal().array() += compliance;
-  held.compliance += compliance;
-  held.q -= compliance * p;
+  held.W.diagonal() += compliance;
+  held.compliance =
+      problem.compliance.size() > 0 ? VectorXd(problem.compliance + compliance) : compliance;
+  held.q -= compliance.cwiseProduct(p);
   return held;
 }
 
@@ -115,7 +116,7 @@ MatrixXd ConeProjections::change(const std::vector<Slope>& slopes) const {
 std::optional<VectorXd> ConeProjections::step_by_bodies(const std::vector<Slope>& slopes,
                                                         const MatrixXd& J,
                                                         const VectorXd& F) const {
-  if (of_.roots.empty() || !(of_.compliance > 0.0)) {
+  if (of_.roots.empty() || of_.compliance.size() == 0) {
     return std::nullopt;
   }
   BodySystem bodies(of_.roots, VectorXd::Ones(F.size()));
@@ -124,8 +125,9 @@ std::optional<VectorXd> ConeProjections::step_by_bodies(const std::vector<Slope>
   }
   std::vector<Matrix3d> inverse;
   std::vector<Matrix3d> rates;
-  for (const Slope& slope : slopes) {
-    inverse.emplace_back((slope.impulse + of_.compliance * slope.rates).inverse());
+  for (std::size_t k = 0; k < slopes.size(); ++k) {
+    const Slope& slope = slopes[k];
+    inverse.emplace_back((slope.impulse + of_.compliance[place(k)] * slope.rates).inverse());
     rates.push_back(slope.rates);
   }
   bodies.decompose(std::move(inverse), rates);

@@ -26,13 +26,14 @@ struct ConeProblem {
   std::vector<double> friction;   ///< by touch, >= 0; infinite: rough
   bool holds_along = false;       ///< what is rough has u_t = 0 and any p_t, pressed or not
   std::vector<ConeRoot> roots{};  ///< of W without the compliance, by touch; empty: not known
-  double compliance = 0.0;        ///< 1/kg, on the diagonal of W
+  Eigen::VectorXd compliance{};   ///< 1/kg, on the diagonal of W; empty: none
 };
 
-/// The problem with this compliance at each touch, 1/kg, against the impulses p: what a step of the
-/// proximal point algorithm solves [Rockafellar1976].
+/// The problem with this compliance, 1/kg, against the impulses p: what a step of the proximal
+/// point algorithm solves [Rockafellar1976].
+/// @param compliance  3 by touch, the same along all axes of one
 [[nodiscard]] ConeProblem held_near(const ConeProblem& problem, const Eigen::VectorXd& p,
-                                    double compliance);
+                                    const Eigen::VectorXd& compliance);
 
 /// Impulses, and what they are off.
 struct ConeImpulses {

@@ -28,15 +28,29 @@ constexpr double most_contradiction = 100.0;
 constexpr double nearly_settled = 1e4;
 constexpr int idle_sweeps = 64;
 /// What has not settled after so many sweeps is looked for at all touches at once, and after so
-/// many times as many again and again, in these ways: all of them before `most_sweeps`. Steps,
-/// which come often, have the first ones.
+/// many times as many again and again, in these ways: all of them before `most_sweeps`.
 constexpr int at_once_after = 64;
 constexpr int later_in_impacts = 3;
 constexpr int later_in_steps = 4;
 constexpr std::array ways_of_impacts = {AtOnce::newton, AtOnce::interior, AtOnce::proximal,
                                         AtOnce::bounded};
-constexpr std::array ways_of_steps = {AtOnce::newton, AtOnce::interior, AtOnce::newton};
-constexpr std::array last_ways_of_steps = {AtOnce::newton, AtOnce::interior, AtOnce::held_along};
+constexpr std::array ways_of_instants = {AtOnce::newton, AtOnce::interior, AtOnce::newton};
+constexpr std::array ways_of_steps = {AtOnce::compliant, AtOnce::interior, AtOnce::newton};
+constexpr std::array last_ways_of_steps = {AtOnce::compliant, AtOnce::interior, AtOnce::held_along};
+
+std::span<const AtOnce> ways_of(SweptFor what) {
+  switch (what) {
+    case SweptFor::impact:
+      return ways_of_impacts;
+    case SweptFor::instant:
+      return ways_of_instants;
+    case SweptFor::step:
+      return ways_of_steps;
+    case SweptFor::last_resort:
+      break;
+  }
+  return last_ways_of_steps;
+}
 
 /// When sweeps of a step over many touches are helped by linear systems (`solve_as_found`). What
 /// these give is swept on, and taken back if it has not come nearer in the end. What settles is
@@ -194,7 +208,7 @@ double ContactSweeps::sweep_once(std::span<const Vector3> rates, bool rubs, doub
 ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
                                           std::span<const Vector3> rates,
                                           std::span<const Vector3> begin, double settled, bool rubs,
-                                          bool last_resort, int halvings) const {
+                                          SweptFor what, int halvings) const {
   Swept swept{std::vector<Vector3>(blocks_.size(), Vector3::Zero()), velocities};
   std::vector<Vector3> along(blocks_.size(), Vector3::Zero());
   for (std::size_t k = 0; k < blocks_.size() && !begin.empty(); ++k) {
@@ -203,14 +217,11 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
   push_all(along, swept.velocities);
   double least = nearly_settled * settled;
   int idle = 0;
-  const bool in_step = !rates.empty();
+  const bool in_step = what != SweptFor::impact;
   const bool many = in_step && blocks_.size() > most_for_newton;
   int at_once = blocks_.size() <= most_at_once ? at_once_after : most_sweeps;
-  std::span<const AtOnce> ways = ways_of_impacts;
-  if (in_step) {
-    ways = last_resort ? last_ways_of_steps : ways_of_steps;
-  }
-  if (blocks_.size() > most_for_newton) {
+  std::span<const AtOnce> ways = ways_of(what);
+  if (blocks_.size() > most_for_newton && ways.front() == AtOnce::newton) {
     ways = ways.subspan(1);
   }
   Trial trial;
@@ -252,7 +263,7 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
       ways = ways.subspan(1);
       // What is left of redundant touches in a step is how they contradict each other; and sweeps
       // would let go again what was held.
-      const bool redundant = in_step && way == AtOnce::interior;
+      const bool redundant = way == AtOnce::compliant || (in_step && way == AtOnce::interior);
       const double enough = (redundant ? most_contradiction : 1.0) * settled;
       const double off =
           settle_at_once(velocities, rates, enough, rubs, way, along, swept.velocities);

@@ -24,6 +24,14 @@ struct SweptTouch {
   double friction = 0.0;  ///< Coulomb's; infinite: rough
 };
 
+/// What impulses at touches are of.
+enum class SweptFor {
+  impact,       ///< at an instant
+  instant,      ///< forces at an instant, as impulses of a second
+  step,         ///< forces on the average of a step
+  last_resort,  ///< the same; where nothing settles, rough touches hold along their surfaces
+};
+
 /// Impulses at all touches at once that push and never pull, within the cones of friction, after
 /// which nothing approaches and what is pressed does not part: touch by touch, all others as they
 /// are, again and again [Moreau1988, Jourdan1998]; where that hardly moves, at all touches at once
@@ -49,11 +57,10 @@ class ContactSweeps {
   /// @param rates  what is added to the rates, by touch: along the normal and two tangents that
   ///               `axes` tells, m/s; empty: nothing
   /// @param begin  impulses to begin with, by touch, N s; empty: none
-  /// @param last_resort  of a step: where nothing settles, rough touches hold along their surfaces
   /// @param halvings  the most sweeps are halved so many times
   [[nodiscard]] Swept sweep(std::vector<Vector6> velocities, std::span<const Vector3> rates,
                             std::span<const Vector3> begin, double settled, bool rubs,
-                            bool last_resort = false, int halvings = 0) const;
+                            SweptFor what = SweptFor::impact, int halvings = 0) const;
 
   [[nodiscard]] double friction(std::size_t touch) const { return blocks_[touch].friction; }
   void set_friction(std::size_t touch, double mu) { blocks_[touch].friction = mu; }

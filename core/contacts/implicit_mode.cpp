@@ -26,6 +26,9 @@ constexpr double held = 1e-7;
 /// Impulses of redundant touches that are so many times what the loads give to all bodies in the
 /// step are known to no digit, and what they do against each other as the bodies turn is no less.
 constexpr double absurd = 1e5;
+/// They may be so many times what stops all bodies: a rough touch that slips has to stop, however
+/// short the step.
+constexpr double stopping = 10.0;
 /// An impulse that presses by less than this part of what it is presses by roundoff.
 constexpr double rounded = 1e-14;
 /// Friction that is bounded where none was.
@@ -157,6 +160,19 @@ bool let_part(std::span<const SweptTouch> touches, const ContactSweeps::Swept& s
   return any;
 }
 
+/// Where no impulses settle, as friction without a bound may have none that keep all: it is bounded
+/// everywhere. Whether some was not.
+bool bound_friction(ContactSweeps& sweeps, std::size_t touches) {
+  bool any = false;
+  for (std::size_t k = 0; k < touches; ++k) {
+    if (std::isinf(sweeps.friction(k))) {
+      sweeps.set_friction(k, nearly_rough);
+      any = true;
+    }
+  }
+  return any;
+}
+
 /// Where that does not settle: they go on without friction. Whether there are some.
 bool let_slide(std::span<const SweptTouch> touches, ContactSweeps& sweeps) {
   bool any = false;
@@ -231,7 +247,8 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
       velocities[i] << v + h * state.loads[i].linear, w + h * state.loads[i].angular;
     }
     const auto sweep = [&] {
-      swept = sweeps.sweep(velocities, rates, begin, settled * scale, true, last_resort, halvings);
+      swept = sweeps.sweep(velocities, rates, begin, settled * scale, true,
+                           last_resort ? SweptFor::last_resort : SweptFor::step, halvings);
       mode.solves += swept.solves;
     };
     sweep();
@@ -241,11 +258,14 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
     if (!(swept.changed <= accepted * scale) && let_slide(touches, sweeps)) {
       sweep();
     }
+    if (!(swept.changed <= accepted * scale) && bound_friction(sweeps, touches.size())) {
+      sweep();
+    }
     if (!(swept.changed <= accepted * scale)) {
       mode.refusal = "impulses of contacts were looked for touch by touch, and did not settle";
       return mode;
     }
-    if (largest(swept.impulse) > absurd * moved * scale) {
+    if (largest(swept.impulse) > moved * std::max(absurd * scale, stopping * fastest)) {
       mode.refusal = "impulses of contacts that are redundant were found far too large";
       return mode;
     }

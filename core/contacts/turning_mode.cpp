@@ -433,7 +433,7 @@ Complementarity clear_by_sweeps(const TurningState& state, const ContactSystem& 
   const auto swept = ContactSweeps(state.bodies, touches)
                          .sweep(std::vector<ContactSweeps::Vector6>(state.bodies.size(),
                                                                     ContactSweeps::Vector6::Zero()),
-                                rates, {}, settled, false);
+                                rates, {}, settled, false, SweptFor::instant);
   Complementarity found;
   found.solved = swept.changed <= 100.0 * settled;
   found.x.resize(off.size());

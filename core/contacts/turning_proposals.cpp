@@ -137,8 +137,8 @@ std::vector<FrictionChoice> TurningForces::propose_at_once(std::span<const Frict
   for (const Twist& load : state_.loads) {
     accelerations.emplace_back() << load.linear, load.angular;
   }
-  const auto found = sweeps.sweep(std::move(accelerations), rates, {}, exact * load_, true, false,
-                                  fewer + halvings);
+  const auto found = sweeps.sweep(std::move(accelerations), rates, {}, exact * load_, true,
+                                  SweptFor::instant, fewer + halvings);
   ++solves_;
   if (!(found.changed <= settled * load_)) {
     return {};
