@@ -132,9 +132,19 @@ ConeImpulses cone_compliant(const ConeProblem& problem, const VectorXd& begin, d
       nearest = {p, off};
     }
   }
-  if (std::isfinite(nearest.off)) {
-    projections.make_exact(nearest);
+  if (!std::isfinite(nearest.off)) {
+    return nearest;
   }
+  bool nearer = true;
+  while (nearer && nearest.off > settled) {
+    VectorXd next = nearest.impulse - projections.newton_step(nearest.impulse);
+    const double off = projections.off(next).lpNorm<Eigen::Infinity>();
+    nearer = off < 0.5 * nearest.off;
+    if (nearer) {
+      nearest = {std::move(next), off};
+    }
+  }
+  projections.make_exact(nearest);
   return nearest;
 }
 

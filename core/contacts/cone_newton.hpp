@@ -31,7 +31,8 @@ inline namespace core {
 /// as against no impulses: redundant touches share alike, and what they contradict each other by,
 /// as roundoff of where they are does, asks for no more than the compliance bounds, and is left in
 /// `off`. Where Newton's method goes round in a circle, larger compliances lead there. What the
-/// compliance itself leaves, problems near the impulses so far take away, three at most.
+/// compliance itself leaves, problems near the impulses so far take away, three at most, and
+/// Newton's method without it, as long as it comes nearer.
 /// @returns those to begin with, and infinity for what they are off, where that is not solved
 [[nodiscard]] ConeImpulses cone_compliant(const ConeProblem& problem, const Eigen::VectorXd& begin,
                                           double settled);

@@ -263,11 +263,11 @@ ContactSweeps::Swept ContactSweeps::sweep(std::vector<Vector6> velocities,
       ways = ways.subspan(1);
       // What is left of redundant touches in a step is how they contradict each other; and sweeps
       // would let go again what was held.
-      const bool redundant = way == AtOnce::compliant || (in_step && way == AtOnce::interior);
+      const bool redundant = in_step && way == AtOnce::interior;
       const double enough = (redundant ? most_contradiction : 1.0) * settled;
       const double off =
           settle_at_once(velocities, rates, enough, rubs, way, along, swept.velocities);
-      const bool nearly = redundant || way == AtOnce::held_along;
+      const bool nearly = redundant || way == AtOnce::compliant || way == AtOnce::held_along;
       if (off <= (nearly ? nearly_settled : 1.0) * settled) {
         swept.changed = off;
         break;
