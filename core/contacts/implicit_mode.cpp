@@ -160,6 +160,18 @@ bool let_part(std::span<const SweptTouch> touches, const ContactSweeps::Swept& s
   return any;
 }
 
+/// Where that does not settle: they go on without friction. Whether there are some.
+bool let_slide(std::span<const SweptTouch> touches, ContactSweeps& sweeps) {
+  bool any = false;
+  for (std::size_t k = 0; k < touches.size(); ++k) {
+    if (std::isinf(touches[k].friction) && sweeps.friction(k) == nearly_rough) {
+      sweeps.set_friction(k, 0.0);
+      any = true;
+    }
+  }
+  return any;
+}
+
 /// Where no impulses settle, as friction without a bound may have none that keep all: it is bounded
 /// everywhere. Whether some was not.
 bool bound_friction(ContactSweeps& sweeps, std::size_t touches) {
@@ -167,18 +179,6 @@ bool bound_friction(ContactSweeps& sweeps, std::size_t touches) {
   for (std::size_t k = 0; k < touches; ++k) {
     if (std::isinf(sweeps.friction(k))) {
       sweeps.set_friction(k, nearly_rough);
-      any = true;
-    }
-  }
-  return any;
-}
-
-/// Where that does not settle: they go on without friction. Whether there are some.
-bool let_slide(std::span<const SweptTouch> touches, ContactSweeps& sweeps) {
-  bool any = false;
-  for (std::size_t k = 0; k < touches.size(); ++k) {
-    if (std::isinf(touches[k].friction) && sweeps.friction(k) == nearly_rough) {
-      sweeps.set_friction(k, 0.0);
       any = true;
     }
   }
