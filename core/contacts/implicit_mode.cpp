@@ -3,6 +3,7 @@
 #include "core/contacts/contact_sweeps.hpp"
 #include "core/contacts/least_norm.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -31,6 +32,8 @@ constexpr double absurd = 1e5;
 constexpr double stopping = 10.0;
 /// An impulse that presses by less than this part of what it is presses by roundoff.
 constexpr double rounded = 1e-14;
+/// Work that is this part of what lifts bodies by their size is roundoff.
+constexpr double unfelt = 64.0 * std::numeric_limits<double>::epsilon();
 /// Friction that is bounded where none was.
 constexpr double nearly_rough = 1e3;
 /// So often forces are looked for at most.
@@ -43,8 +46,9 @@ double pressing(const Vector3& normal, const Vector3& impulse) {
   return along > rounded * impulse.norm() ? along : 0.0;
 }
 
-/// Leaves nothing along the normals of what is held; returns the most that it changed, m/s.
-double hold_normals(const TurningState& state, TurningMode& mode) {
+/// Leaves nothing along the normals of what is held, nor along the surface where it is `stopped`;
+/// returns the most that it changed, m/s.
+double hold(const TurningState& state, const std::vector<char>& stopped, TurningMode& mode) {
   TurningState from = state;
   std::vector<TouchNow> now;
   for (std::size_t i = 0; i < from.states.size(); ++i) {
@@ -54,8 +58,9 @@ double hold_normals(const TurningState& state, TurningMode& mode) {
     now.push_back(look_at(touch, from.states[touch.a], from.states[touch.b]));
   }
   std::vector<FrictionChoice> choices = mode.choices;
-  for (FrictionChoice& choice : choices) {
-    choice.does = choice.does == Does::opens ? Does::opens : Does::slides;
+  for (std::size_t k = 0; k < choices.size(); ++k) {
+    Does& does = choices[k].does;
+    does = does == Does::opens ? Does::opens : stopped[k] != 0 ? Does::sticks : Does::slides;
   }
   HeldVelocities none_left = held_velocities(from, now, choices);
   mode.velocities = std::move(none_left.of);
@@ -87,6 +92,58 @@ FrictionChoice choice_of(double friction, const Vector3& normal, const Vector3& 
   }
   const Vector3 along = impulse - pressed * normal;
   return {Does::slides, along.isZero(0.0) ? along : Vector3(-along.normalized())};
+}
+
+/// What bodies lose by a change of their velocities, as what is held sees it, J.
+double taken_by(const TurningState& state, const std::vector<Twist>& before,
+                const std::vector<Twist>& after) {
+  double energy = 0.0;
+  for (std::size_t i = 0; i < state.bodies.size(); ++i) {
+    const GroupBody& body = state.bodies[i];
+    if (moves(body)) {
+      const Vector3 v = after[i].linear - before[i].linear;
+      const Vector3 w = after[i].angular - before[i].angular;
+      energy += 0.5 * v.squaredNorm() / body.inverse_mass;
+      energy += w.isZero(0.0) ? 0.0 : 0.5 * w.dot(body.inverse_inertia.llt().solve(w));
+    }
+  }
+  return energy;
+}
+
+/// Impulses of a step act from its start on: where they push along what slides there, as up an
+/// incline on which it is held at the end, they give energy at first. If this is more than others
+/// take, and than it takes to stop that at the start, it is stopped; returns the most that this
+/// changes, m/s.
+double stop_pushed(const TurningState& state, const ContactSweeps& sweeps,
+                   std::span<const Vector3> impulses, std::vector<char>& stopped,
+                   TurningMode& mode) {
+  std::vector<Vector6> begin;
+  for (const Twist& v : mode.velocities) {
+    begin.push_back((Vector6() << v.linear, v.angular).finished());
+  }
+  double given = 0.0;
+  std::vector<char> next = stopped;
+  for (std::size_t k = 0; k < stopped.size(); ++k) {
+    const Vector3& belt = state.touches[k].belt;
+    const Vector3 along = sweeps.axes(k) * impulses[k];
+    const Vector3 slides = sweeps.rate(k, begin) + sweeps.axes(k) * belt;
+    given += along.dot(slides);
+    if (along.tail<2>().dot(slides.tail<2>()) > 0.0 && mode.choices[k].does != Does::opens &&
+        belt.isZero(0.0)) {
+      next[k] = 1;
+    }
+  }
+  if (!(given > mode.nothing) || next == stopped) {
+    return 0.0;
+  }
+  TurningMode still = mode;
+  const double most = hold(state, next, still);
+  if (!(taken_by(state, mode.velocities, still.velocities) <= given)) {
+    return 0.0;
+  }
+  stopped = std::move(next);
+  mode = std::move(still);
+  return most;
 }
 
 double largest(std::span<const Vector3> impulses) {
@@ -210,14 +267,14 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
     fastest = std::max(fastest, v.linear.norm() + v.angular.norm() * state.radius[i]);
   }
   // Nothing approaches at the start.
-  ContactSweeps::Swept stopped =
+  ContactSweeps::Swept arrested =
       sweeps.sweep(std::move(velocities), {}, {}, settled * fastest, false);
-  velocities = std::move(stopped.velocities);
-  for (const Vector3& impulse : stopped.impulse) {
+  velocities = std::move(arrested.velocities);
+  for (const Vector3& impulse : arrested.impulse) {
     mode.struck.push_back(impulse.isZero(0.0) ? 0 : 1);
   }
   mode.driven =
-      carrying_work(state, touches, stopped.impulse) + sweeps.driven_work(stopped.impulse);
+      carrying_work(state, touches, arrested.impulse) + sweeps.driven_work(arrested.impulse);
   for (const Vector6& v : velocities) {
     mode.velocities.push_back({v.head<3>(), v.tail<3>()});
   }
@@ -234,13 +291,18 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
   }
   const double scale =
       forces.load() * h + fastest * std::numeric_limits<double>::epsilon() / settled;
-  double moved = 0.0;  // kg
-  for (const GroupBody& body : state.bodies) {
-    moved += moves(body) ? 1.0 / body.inverse_mass : 0.0;
+  double moved = 0.0;   // kg
+  double lifted = 0.0;  // J
+  for (std::size_t i = 0; i < state.bodies.size(); ++i) {
+    const double m = moves(state.bodies[i]) ? 1.0 / state.bodies[i].inverse_mass : 0.0;
+    moved += m;
+    lifted += m > 0.0 ? m * state.loads[i].linear.norm() * state.radius[i] : 0.0;
   }
+  mode.nothing = held * moved * scale * scale + unfelt * lifted;
   ContactSweeps::Swept swept;
   // What holding normals takes from velocities, forces do not: they are looked for again.
   double taken = 0.0;
+  std::vector<char> stopped(touches.size(), 0);
   for (int round = 0; round == 0 || (round < most_holds && taken > held * scale); ++round) {
     for (std::size_t i = 0; i < velocities.size(); ++i) {
       const auto& [v, w] = mode.velocities[i];
@@ -274,7 +336,8 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
       mode.choices.push_back(choice_of(sweeps.friction(k), touches[k].normal, swept.impulse[k],
                                        sweeps.rate(k, swept.velocities) + rates[k], held * scale));
     }
-    taken = hold_normals(state, mode);
+    taken = hold(state, stopped, mode);
+    taken += stop_pushed(state, sweeps, swept.impulse, stopped, mode);
     begin = swept.impulse;
   }
   share_alike(state.touches, touches, swept.impulse);

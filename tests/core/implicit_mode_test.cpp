@@ -119,6 +119,31 @@ TEST_CASE("implicit step: what approaches when it begins is stopped by an impuls
   CHECK(std::count(mode.struck.begin() + 4, mode.struck.end(), 1) == 0);
 }
 
+// Up an incline slides a block, slower than its weight along it brakes in the step, and is held
+// then by friction. That pushes up, and on a block that slid up with it would give energy from the
+// start: m (a h - u) u, where it takes m u^2/2 to stop it.
+TEST_CASE("implicit step: what holds a block on an incline does not carry it up", "[implicit]") {
+  constexpr double h = 1e-3;
+  constexpr double mu = 0.8;
+  constexpr double down = 0.5 * g;                          // a: along the incline, m/s^2
+  const double part = GENERATE(0.01, 0.3, 0.66, 1.2, 1.5);  // of a h: u
+  CAPTURE(part);
+  TurningState state = blocks({{part * down * h, 0.0, 0.0}}, mu);
+  state.loads[1].linear.x() = -down;
+  const TurningMode mode = implicit_mode(state, h, {});
+  REQUIRE(mode.refusal.empty());
+  // Sweeps settle to 1e-10 of what the loads do in a step.
+  CHECK(after(mode, 1, h).linear.norm() <= 1e-8 * g * h);
+  double power = 0.0;
+  for (const Vector3& force : mode.forces.force) {
+    power += force.dot(mode.velocities[1].linear);
+  }
+  CHECK(power <= 1e-7 * g * g * h);
+  // Where friction has to brake, too, it slides until it stops.
+  const double slides = part > 1.0 ? part * down * h : 0.0;
+  CHECK(mode.velocities[1].linear.x() == Approx(slides).margin(1e-12 * g * h));
+}
+
 TEST_CASE("implicit step: impulses are within their cones, and take energy from what they meet",
           "[implicit]") {
   constexpr std::uint64_t seed = 20261124;

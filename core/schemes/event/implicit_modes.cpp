@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <tuple>
+#include <utility>
 
 namespace kairos {
 inline namespace core {
@@ -28,6 +31,11 @@ constexpr int most_corrections = 2;
 constexpr int most_halvings = 30;
 /// Where impulses of a step are not found, those of one half as long may be: so often.
 constexpr int most_refused = 4;
+/// Where contacts give so many times what is nothing, which is no truncation of what swings,
+/// impulses are found for the step as it was cut off before they would have taken it, or for half
+/// of it: so often.
+constexpr double much = 100.0;
+constexpr int most_cuts = 3;
 /// What ends a step after less than this part of it strikes at once.
 constexpr double least_part = 1e-9;
 
@@ -41,6 +49,18 @@ double most_missed(const TurningMode& mode, const TurningStep& step) {
     }
   }
   return most;
+}
+
+/// What contacts give the group in a step, beside what belts do, J.
+double given(const TurningStep& step) {
+  double work = 0.0;
+  for (const Polynomial<3>& leaked : step.leaked) {
+    work += leaked(step.duration).x();
+  }
+  for (const Polynomial<3>& rubbed : step.rubbed) {
+    work += rubbed(step.duration).x();
+  }
+  return work;
 }
 
 /// Whether something gives the group energy through what touches: a drive or a belt.
@@ -97,14 +117,19 @@ bool EventModes::step_over(const Gathered& found, Turning& turning, Instant t,
   const bool few = turning.group.start.touches.size() <= few_touches;
   double h =
       std::min({(few ? part_of_few : implicit_part) * frame, given_until(turning) - t, before});
-  bool halved = false;
   int refused = 0;
-  for (int round = 0; round < most_halvings; ++round, h *= 0.5, halved = true) {
+  int cuts = 0;
+  double tried = 0.0;
+  std::optional<std::pair<TurningMode, TurningStep>> gave;  // one in which contacts give energy
+  for (int round = 0; round < most_halvings; ++round, h *= 0.5) {
     turning.mode = implicit_mode(turning.group.start, h, warm, asked.last_resort,
                                  asked.last_resort ? 0 : halvings(found, t, &Turned::unsettled));
     count_in_vain(found, turning, t, &Turned::unsettled);
     turning.mode.keeps_all = turning.all;
     run_.cost.contact_solves += turning.mode.solves;
+    if (gave && (!turning.mode.refusal.empty() || turning.mode.flies)) {
+      break;
+    }
     if (!turning.mode.refusal.empty()) {
       if (++refused > most_refused) {
         break;
@@ -123,12 +148,33 @@ bool EventModes::step_over(const Gathered& found, Turning& turning, Instant t,
     if (few || something_drives(turning.group)) {
       correct(turning, t, h, asked);
     }
-    turning.step.halved = turning.step.halved || halved;
     const bool made = turning.step.refusal.empty() && turning.step.duration > least_part * h;
     const bool parts = made && h > least_part * frame && !ends_in_touch(found, turning);
-    if (made && !parts && short_steps(found) <= TurningLimits::most_short_steps) {
+    const bool found_one = made && !parts && short_steps(found) <= TurningLimits::most_short_steps;
+    if (!found_one) {
+      if (gave) {
+        break;
+      }
+      continue;
+    }
+    // How long the next step may be, that of this one tells which was not yet shortened for it.
+    tried = std::max(tried, turning.step.stepped);
+    turning.step.stepped = tried;
+    turning.step.halved = turning.step.halved || round > cuts;
+    // What strikes has to be met within a step, not just after its end.
+    const double end = turning.step.duration;
+    const bool may_be_shorter = end == h || 2.0 * end < h;
+    const bool gives = given(turning.step) > much * turning.mode.nothing;
+    if (!gives || !may_be_shorter || cuts == most_cuts) {
       return true;
     }
+    gave.emplace(turning.mode, turning.step);
+    ++cuts;
+    h = end == h ? h : 4.0 * end;
+  }
+  if (gave) {
+    std::tie(turning.mode, turning.step) = std::move(*gave);
+    return true;
   }
   why_not_ = exactly.empty() ? turning.mode.refusal : exactly;
   if (why_not_.empty()) {
