@@ -35,12 +35,57 @@ constexpr int most_unsolved = 3;
 constexpr double least_part = 1e-7;
 constexpr std::array leading_parts = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, least_part};
 constexpr int most_compliant = 3;
+/// What slides so many times faster than the others goes on; what is slower than this part of the
+/// fastest is at rest.
+constexpr double much_faster = 1e3;
+constexpr double at_rest = 1e-12;
 /// See `AtOnce::bounded`.
 constexpr double nearly_rough = 100.0;
 
 /// Impulses to begin with. What friction jams, as a wedge, has far larger ones than what it began
 /// with.
-enum class Start { given, nothing, all_stick };
+enum class Start { given, nothing, all_stick, slow_stick };
+
+/// Impulses with which what slides much faster than the others slides on, and these stick; none
+/// where nothing does. Where friction jams the others they are not found from where all stick,
+/// which would stop what is fast.
+VectorXd slow_stick(const ConeProblem& problem) {
+  const std::size_t touches = problem.friction.size();
+  const auto slip = [&](std::size_t k) -> Eigen::Vector2d {
+    return problem.q.segment<2>(static_cast<Eigen::Index>(3 * k + 1));
+  };
+  std::vector<double> speeds;
+  for (std::size_t k = 0; k < touches; ++k) {
+    speeds.push_back(slip(k).norm());
+  }
+  std::sort(speeds.begin(), speeds.end());
+  double fast = infinity;
+  double widest = much_faster;
+  for (std::size_t k = 1; k < touches; ++k) {
+    const double ratio = speeds[k] / std::max(speeds[k - 1], at_rest * speeds.back());
+    if (ratio > widest) {
+      widest = ratio;
+      fast = speeds[k];
+    }
+  }
+  if (std::isinf(fast)) {
+    return VectorXd::Zero(problem.q.size());
+  }
+  std::vector<Eigen::Index> held;  // rates that are to be zero
+  Eigen::MatrixXd gives = Eigen::MatrixXd::Identity(problem.q.size(), problem.q.size());
+  for (std::size_t k = 0; k < touches; ++k) {
+    const auto at = static_cast<Eigen::Index>(3 * k);
+    held.push_back(at);
+    if (slip(k).norm() < fast || std::isinf(problem.friction[k])) {
+      held.insert(held.end(), {at + 1, at + 2});
+    } else {
+      gives.block<2, 1>(at + 1, at) = -problem.friction[k] * slip(k).normalized();
+    }
+  }
+  const Eigen::MatrixXd shares = gives(Eigen::seqN(0, gives.rows()), held);
+  const Eigen::MatrixXd rates = problem.W * shares;
+  return shares * least_norm(rates(held, Eigen::seqN(0, rates.cols())), -problem.q(held));
+}
 
 /// The impulses that came nearest from these starts, one after the other.
 ConeImpulses newton_from(std::initializer_list<Start> starts, const ConeProblem& problem,
@@ -51,6 +96,11 @@ ConeImpulses newton_from(std::initializer_list<Start> starts, const ConeProblem&
     VectorXd p = start == Start::given ? begin : VectorXd(VectorXd::Zero(begin.size()));
     if (start == Start::all_stick && nearest.off > settled) {
       p = least_norm(problem.W, -problem.q);
+    } else if (start == Start::slow_stick && nearest.off > settled) {
+      p = slow_stick(problem);
+      if (p.isZero(0.0)) {
+        continue;
+      }
     }
     for (int steps = 0, idle = 0; idle < most_idle && steps < most_steps && nearest.off > settled;
          ++steps, ++idle) {
@@ -72,7 +122,8 @@ ConeImpulses newton_from(std::initializer_list<Start> starts, const ConeProblem&
 }  // namespace
 
 ConeImpulses cone_newton(const ConeProblem& problem, const VectorXd& begin, double settled) {
-  return newton_from({Start::given, Start::nothing, Start::all_stick}, problem, begin, settled);
+  return newton_from({Start::given, Start::nothing, Start::all_stick, Start::slow_stick}, problem,
+                     begin, settled);
 }
 
 ConeImpulses cone_proximal(const ConeProblem& problem, const VectorXd& begin, double settled) {
