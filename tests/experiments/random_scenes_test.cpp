@@ -335,7 +335,8 @@ TEST_CASE("scenes with friction that stopped once", "[random]") {
   // balls that are settled in vain at one instant, or struck by roundoff while others hold them;
   // aligned boxes; a rough ball that has to stop its slip in a step of 1e-12 s; rough touches that
   // no impulses keep all of, and such that would take very large ones; three touches that friction
-  // jams beside one that slides 1e6 times faster.
+  // jams beside one that slides 1e6 times faster; balls that part where time stood still; a ball of
+  // 52 kg that struck a box of 3 g on a floor 10,000 times at one instant.
   for (const auto& [of_seed, index] :
        {std::pair(20261201, 13), {20261209, 160},  {20261208, 30},   {20261211, 45},
         {20261204, 86},          {20261204, 149},  {20261202, 220},  {20261202, 173},
@@ -343,7 +344,7 @@ TEST_CASE("scenes with friction that stopped once", "[random]") {
         {20261201, 262},         {20261128, 26},   {20261130, 432},  {20261201, 518},
         {20261201, 1073},        {20261401, 6544}, {20261401, 8308}, {20261401, 6397},
         {20261401, 9097},        {20261401, 983},  {20261401, 460},  {20261401, 15787},
-        {20261701, 297}}) {
+        {20261701, 297},         {20261801, 308},  {20261901, 381}}) {
     const SceneSurvey survey{.seed = static_cast<std::uint64_t>(of_seed), .kind = SceneKind::rough};
     const Trial trial = try_scene(scene_of(survey, static_cast<std::size_t>(index)));
     CAPTURE(of_seed, index, trial.reason);

@@ -146,7 +146,8 @@ void EventContacts::stay(BodyIndex a, BodyIndex b, Instant t) {
   if (lands(a, b, contact, t) || settle_stalled(pair, t)) {
     return;
   }
-  if (meet_elsewhere(a, b, t) || end_by_pushing(pair, 0.0, t) || settle_at_last(pair, t)) {
+  if (meet_elsewhere(a, b, t) || leave_alone(a, b, t) || end_by_pushing(pair, 0.0, t) ||
+      settle_at_last(pair, t)) {
     return;
   }
   depart(a, b, t);
@@ -643,7 +644,8 @@ void EventContacts::Touching::persist(Archive& archive) { archive(settled, conta
 void EventContacts::persist(Archive& archive) {
   std::size_t n = touching_.size();
   archive.count(n);
-  archive(stalled_, stalled_at_, pushed_, pushed_in_, struck_by_, struck_at_);
+  archive(stalled_, stalled_at_, pushed_, pushed_in_, struck_by_, struck_at_, struck_last_.first,
+          struck_last_.second, struck_alike_);
   if (archive.reading()) {
     for (std::size_t k = 0; k < n; ++k) {
       BodyIndex i = 0;

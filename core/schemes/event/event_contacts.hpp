@@ -139,6 +139,7 @@ class EventContacts {
   void settle(BodyIndex ball, const Support& support, double pressing, double e, Instant t);
   void resume_support(BodyIndex i, Instant t);
   void follow(BodyIndex ball, const Support& support, Instant t);
+  void count_strike(const BodyPair& pair, double speed, Instant t);
   [[nodiscard]] bool is_nothing(BodyIndex a, BodyIndex b, double speed) const;
   void lay_still(BodyIndex a, BodyIndex b);
   [[nodiscard]] double leaving_speed(BodyIndex ball, const Support& support, Instant t) const;
@@ -164,6 +165,8 @@ class EventContacts {
   double pushed_in_ = -1.0;  ///< counted from the start of the run
   double struck_by_ = 0.0;   ///< the fastest approach of those that struck at `struck_at_`, m/s
   Instant struck_at_ = Instant::never();
+  BodyPair struck_last_{};  ///< who did, and how often one after the other
+  int struck_alike_ = 0;
 };
 
 }  // namespace core

@@ -27,6 +27,10 @@ constexpr std::size_t most_rounds = 1000;
 /// After so many rounds for each of them, what is left is looked for at once.
 constexpr std::size_t few_rounds = 4;
 
+/// What strikes so often at one instant, and nothing else in between, is held back by what settles
+/// what it strikes each time: a heavy ball on a light box on a floor.
+constexpr int most_alike = 64;
+
 /// What approaches by less than this part of the fastest that struck at the instant is nothing, if
 /// both move by less than `still` of it: pairs hand impacts to and fro that no coordinate tells.
 constexpr double nothing = 0x1p-120;
@@ -216,13 +220,15 @@ void EventContacts::meet(Event& event, Instant t) {
   const auto [a, b] = std::pair{event.a, event.b};
   const std::array<BodyIndex, 2> pair{a, b};
   const double approach = normal_velocity(event.contact, motions_.now(a), motions_.now(b));
-  struck_by_ = struck_at_ == t ? std::max(struck_by_, -approach) : -approach;
-  struck_at_ = t;
+  count_strike({a, b}, -approach, t);
   if (is_nothing(a, b, -approach)) {
     const std::vector<BodyIndex> bodies = modes_.group(pair);
     modes_.bring_group(bodies, t);
     lay_still(a, b);
     return settle(bodies, t, {.may_turn = true}) ? void() : set_free(bodies, t);
+  }
+  if (struck_alike_ % most_alike == 0 && end_by_pushing(pair, 0.0, t)) {
+    return;
   }
   if (strike_group(event, std::max(-approach, 0.0))) {
     return;
@@ -234,6 +240,15 @@ void EventContacts::meet(Event& event, Instant t) {
   }
   strike(event);
   go_on_struck(event, approach, std::move(group), t);
+}
+
+/// The two strike each other at this speed, m/s.
+void EventContacts::count_strike(const BodyPair& pair, double speed, Instant t) {
+  const bool same = struck_at_ == t;
+  struck_by_ = same ? std::max(struck_by_, speed) : speed;
+  struck_alike_ = same && struck_last_ == pair ? struck_alike_ + 1 : 1;
+  struck_at_ = t;
+  struck_last_ = pair;
 }
 
 /// Whether an approach at this speed, m/s, is nothing beside what struck at this instant.
