@@ -112,8 +112,8 @@ double taken_by(const TurningState& state, const std::vector<Twist>& before,
 
 /// Impulses of a step act from its start on: where they push along what slides there, as up an
 /// incline on which it is held at the end, they give energy at first. If this is more than others
-/// take, and than it takes to stop that at the start, it is stopped; returns the most that this
-/// changes, m/s.
+/// take, and than it takes to stop that at the start, it is stopped; else they give it. Returns the
+/// most that this changes, m/s.
 double stop_pushed(const TurningState& state, const ContactSweeps& sweeps,
                    std::span<const Vector3> impulses, std::vector<char>& stopped,
                    TurningMode& mode) {
@@ -133,7 +133,8 @@ double stop_pushed(const TurningState& state, const ContactSweeps& sweeps,
       next[k] = 1;
     }
   }
-  if (!(given > mode.nothing) || next == stopped) {
+  mode.gives = given > mode.nothing;
+  if (!mode.gives || next == stopped) {
     return 0.0;
   }
   TurningMode still = mode;
@@ -143,6 +144,7 @@ double stop_pushed(const TurningState& state, const ContactSweeps& sweeps,
   }
   stopped = std::move(next);
   mode = std::move(still);
+  mode.gives = false;
   return most;
 }
 

@@ -24,6 +24,7 @@ struct TurningMode {
   bool keeps_all = false;         ///< what is not held goes on with what is, too
   /// By touch: velocities at the end of an implicit step as its forces were found for, m/s.
   std::vector<Vector3> foreseen;
+  bool gives = false;     ///< forces of an implicit step give energy at its start
   double nothing = 0.0;   ///< work of contacts that is none in an implicit step, J
   bool searched = false;  ///< what is likely did not verify: changes of it were tried
   int solves = 0;

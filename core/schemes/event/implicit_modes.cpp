@@ -31,10 +31,8 @@ constexpr int most_corrections = 2;
 constexpr int most_halvings = 30;
 /// Where impulses of a step are not found, those of one half as long may be: so often.
 constexpr int most_refused = 4;
-/// Where contacts give so many times what is nothing, which is no truncation of what swings,
-/// impulses are found for the step as it was cut off before they would have taken it, or for half
-/// of it: so often.
-constexpr double much = 100.0;
+/// Where contacts give energy, impulses are found for the step as it was cut off before they would
+/// have taken it, or for half of it: so often.
 constexpr int most_cuts = 3;
 /// What ends a step after less than this part of it strikes at once.
 constexpr double least_part = 1e-9;
@@ -164,7 +162,7 @@ bool EventModes::step_over(const Gathered& found, Turning& turning, Instant t,
     // What strikes has to be met within a step, not just after its end.
     const double end = turning.step.duration;
     const bool may_be_shorter = end == h || 2.0 * end < h;
-    const bool gives = given(turning.step) > much * turning.mode.nothing;
+    const bool gives = turning.mode.gives && given(turning.step) > turning.mode.nothing;
     if (!gives || !may_be_shorter || cuts == most_cuts) {
       return true;
     }
