@@ -3,7 +3,6 @@
 #include "core/contacts/contact_sweeps.hpp"
 #include "core/contacts/least_norm.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -46,9 +45,8 @@ double pressing(const Vector3& normal, const Vector3& impulse) {
   return along > rounded * impulse.norm() ? along : 0.0;
 }
 
-/// Leaves nothing along the normals of what is held, nor along the surface where it is `stopped`;
-/// returns the most that it changed, m/s.
-double hold(const TurningState& state, const std::vector<char>& stopped, TurningMode& mode) {
+/// Leaves nothing along the normals of what is held; returns the most that it changed, m/s.
+double hold_normals(const TurningState& state, TurningMode& mode) {
   TurningState from = state;
   std::vector<TouchNow> now;
   for (std::size_t i = 0; i < from.states.size(); ++i) {
@@ -58,9 +56,8 @@ double hold(const TurningState& state, const std::vector<char>& stopped, Turning
     now.push_back(look_at(touch, from.states[touch.a], from.states[touch.b]));
   }
   std::vector<FrictionChoice> choices = mode.choices;
-  for (std::size_t k = 0; k < choices.size(); ++k) {
-    Does& does = choices[k].does;
-    does = does == Does::opens ? Does::opens : stopped[k] != 0 ? Does::sticks : Does::slides;
+  for (FrictionChoice& choice : choices) {
+    choice.does = choice.does == Does::opens ? Does::opens : Does::slides;
   }
   HeldVelocities none_left = held_velocities(from, now, choices);
   mode.velocities = std::move(none_left.of);
@@ -94,58 +91,21 @@ FrictionChoice choice_of(double friction, const Vector3& normal, const Vector3& 
   return {Does::slides, along.isZero(0.0) ? along : Vector3(-along.normalized())};
 }
 
-/// What bodies lose by a change of their velocities, as what is held sees it, J.
-double taken_by(const TurningState& state, const std::vector<Twist>& before,
-                const std::vector<Twist>& after) {
-  double energy = 0.0;
-  for (std::size_t i = 0; i < state.bodies.size(); ++i) {
-    const GroupBody& body = state.bodies[i];
-    if (moves(body)) {
-      const Vector3 v = after[i].linear - before[i].linear;
-      const Vector3 w = after[i].angular - before[i].angular;
-      energy += 0.5 * v.squaredNorm() / body.inverse_mass;
-      energy += w.isZero(0.0) ? 0.0 : 0.5 * w.dot(body.inverse_inertia.llt().solve(w));
-    }
-  }
-  return energy;
-}
-
-/// Impulses of a step act from its start on: where they push along what slides there, as up an
-/// incline on which it is held at the end, they give energy at first. If this is more than others
-/// take, and than it takes to stop that at the start, it is stopped; else they give it. Returns the
-/// most that this changes, m/s.
-double stop_pushed(const TurningState& state, const ContactSweeps& sweeps,
-                   std::span<const Vector3> impulses, std::vector<char>& stopped,
-                   TurningMode& mode) {
+/// Whether impulses of a step, which act from its start on, give energy at first, more than
+/// `nothing` in a step: they push along what slides there, as up an incline on which it is held at
+/// the end.
+bool gives_energy(const TurningState& state, const ContactSweeps& sweeps,
+                  std::span<const Vector3> impulses, const TurningMode& mode) {
   std::vector<Vector6> begin;
   for (const Twist& v : mode.velocities) {
     begin.push_back((Vector6() << v.linear, v.angular).finished());
   }
   double given = 0.0;
-  std::vector<char> next = stopped;
-  for (std::size_t k = 0; k < stopped.size(); ++k) {
-    const Vector3& belt = state.touches[k].belt;
-    const Vector3 along = sweeps.axes(k) * impulses[k];
-    const Vector3 slides = sweeps.rate(k, begin) + sweeps.axes(k) * belt;
-    given += along.dot(slides);
-    if (along.tail<2>().dot(slides.tail<2>()) > 0.0 && mode.choices[k].does != Does::opens &&
-        belt.isZero(0.0)) {
-      next[k] = 1;
-    }
+  for (std::size_t k = 0; k < impulses.size(); ++k) {
+    given +=
+        impulses[k].dot(sweeps.axes(k).transpose() * sweeps.rate(k, begin) + state.touches[k].belt);
   }
-  mode.gives = given > mode.nothing;
-  if (!mode.gives || next == stopped) {
-    return 0.0;
-  }
-  TurningMode still = mode;
-  const double most = hold(state, next, still);
-  if (!(taken_by(state, mode.velocities, still.velocities) <= given)) {
-    return 0.0;
-  }
-  stopped = std::move(next);
-  mode = std::move(still);
-  mode.gives = false;
-  return most;
+  return given > mode.nothing;
 }
 
 double largest(std::span<const Vector3> impulses) {
@@ -269,14 +229,14 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
     fastest = std::max(fastest, v.linear.norm() + v.angular.norm() * state.radius[i]);
   }
   // Nothing approaches at the start.
-  ContactSweeps::Swept arrested =
+  ContactSweeps::Swept stopped =
       sweeps.sweep(std::move(velocities), {}, {}, settled * fastest, false);
-  velocities = std::move(arrested.velocities);
-  for (const Vector3& impulse : arrested.impulse) {
+  velocities = std::move(stopped.velocities);
+  for (const Vector3& impulse : stopped.impulse) {
     mode.struck.push_back(impulse.isZero(0.0) ? 0 : 1);
   }
   mode.driven =
-      carrying_work(state, touches, arrested.impulse) + sweeps.driven_work(arrested.impulse);
+      carrying_work(state, touches, stopped.impulse) + sweeps.driven_work(stopped.impulse);
   for (const Vector6& v : velocities) {
     mode.velocities.push_back({v.head<3>(), v.tail<3>()});
   }
@@ -304,7 +264,6 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
   ContactSweeps::Swept swept;
   // What holding normals takes from velocities, forces do not: they are looked for again.
   double taken = 0.0;
-  std::vector<char> stopped(touches.size(), 0);
   for (int round = 0; round == 0 || (round < most_holds && taken > held * scale); ++round) {
     for (std::size_t i = 0; i < velocities.size(); ++i) {
       const auto& [v, w] = mode.velocities[i];
@@ -338,10 +297,10 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
       mode.choices.push_back(choice_of(sweeps.friction(k), touches[k].normal, swept.impulse[k],
                                        sweeps.rate(k, swept.velocities) + rates[k], held * scale));
     }
-    taken = hold(state, stopped, mode);
-    taken += stop_pushed(state, sweeps, swept.impulse, stopped, mode);
+    taken = hold_normals(state, mode);
     begin = swept.impulse;
   }
+  mode.gives = gives_energy(state, sweeps, swept.impulse, mode);
   share_alike(state.touches, touches, swept.impulse);
   mode.flies = true;
   std::vector<Vector6> accelerations;

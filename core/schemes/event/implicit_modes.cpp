@@ -33,7 +33,7 @@ constexpr int most_halvings = 30;
 constexpr int most_refused = 4;
 /// Where contacts give energy, impulses are found for the step as it was cut off before they would
 /// have taken it, or for half of it: so often.
-constexpr int most_cuts = 3;
+constexpr int most_cuts = 6;
 /// What ends a step after less than this part of it strikes at once.
 constexpr double least_part = 1e-9;
 
