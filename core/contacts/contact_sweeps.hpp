@@ -113,5 +113,10 @@ class ContactSweeps {
   std::shared_ptr<const GroupJoints> joints_;
 };
 
+/// Linear and angular, as sweeps take them.
+[[nodiscard]] inline ContactSweeps::Vector6 stacked(const Twist& v) {
+  return (ContactSweeps::Vector6() << v.linear, v.angular).finished();
+}
+
 }  // namespace core
 }  // namespace kairos

@@ -98,7 +98,7 @@ bool gives_energy(const TurningState& state, const ContactSweeps& sweeps,
                   std::span<const Vector3> impulses, const TurningMode& mode) {
   std::vector<Vector6> begin;
   for (const Twist& v : mode.velocities) {
-    begin.push_back((Vector6() << v.linear, v.angular).finished());
+    begin.push_back(stacked(v));
   }
   double given = 0.0;
   for (std::size_t k = 0; k < impulses.size(); ++k) {
@@ -225,7 +225,7 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
   double fastest = 0.0;
   for (std::size_t i = 0; i < state.bodies.size(); ++i) {
     const Twist& v = state.states[i].twist;
-    velocities.push_back((Vector6() << v.linear, v.angular).finished());
+    velocities.push_back(stacked(v));
     fastest = std::max(fastest, v.linear.norm() + v.angular.norm() * state.radius[i]);
   }
   // Nothing approaches at the start.
@@ -305,7 +305,7 @@ TurningMode implicit_mode(const TurningState& state, double h, std::span<const V
   mode.flies = true;
   std::vector<Vector6> accelerations;
   for (const Twist& load : state.loads) {
-    accelerations.push_back((Vector6() << load.linear, load.angular).finished());
+    accelerations.push_back(stacked(load));
   }
   for (std::size_t k = 0; k < touches.size(); ++k) {
     mode.flies = mode.flies && mode.choices[k].does == Does::opens;

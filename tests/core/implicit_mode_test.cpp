@@ -121,7 +121,7 @@ TEST_CASE("implicit step: what approaches when it begins is stopped by an impuls
 
 // Up an incline slides a block, slower than its weight along it brakes in the step, and is held
 // then by friction. That pushes up, and gives energy to a block that slides up with it from the
-// start: m (a h - u) u. What slides by nearly nothing is stopped; of what is faster that is told.
+// start: m (a h - u) u. That is told, unless it is nothing.
 TEST_CASE("implicit step: what gives energy to a block that slides up an incline is told",
           "[implicit]") {
   constexpr double h = 1e-3;

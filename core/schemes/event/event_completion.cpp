@@ -26,8 +26,6 @@ constexpr int most_pushes = 1000;
 /// After so many the last impact of a collapse is taken for one of its end.
 constexpr int few_pushes = 8;
 
-Vector6 stacked(const Twist& v) { return (Vector6() << v.linear, v.angular).finished(); }
-
 /// The touches of a group: where its rows are, with the friction of their pairs.
 std::vector<SweptTouch> touches_of(const EventModes::GroupImpact& impact, const Model& model) {
   std::vector<SweptTouch> touches;
