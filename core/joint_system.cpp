@@ -1,5 +1,7 @@
 #include "core/joint_system.hpp"
 
+#include "core/contacts/least_norm.hpp"
+
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
@@ -17,6 +19,8 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// leave n eps there; chains of bodies whose masses differ by a million leave more than 1e-9.
 constexpr double dependent = 1e-11;
 constexpr int most_rounds = 50;
+/// What the second order resists by less than this part is roundoff: of a loop that moves.
+constexpr double resists = 1e-9;
 
 /// A row with what a unit of it does to its two bodies.
 struct Row {
@@ -197,6 +201,59 @@ std::size_t JointSystem::rank(Instant t, std::span<const BodyState> states) cons
   evaluate(t, states, work);
   factor(states, work);
   return work.regular ? row_count_ : static_cast<std::size_t>(work.orthogonal.rank());
+}
+
+bool JointSystem::is_stuck(Instant t, std::span<const BodyState> states,
+                           std::span<const Wrench> wrenches) const {
+  if (driven_ || rank(t, states) == row_count_) {
+    return false;
+  }
+  Workspace& work = workspace();
+  const Eigen::MatrixXd stresses = work.scale.asDiagonal() * null_space(work.W);
+  const auto largest = [&](std::span<const Twist> twists) {
+    double most = 0.0;
+    for (std::size_t k = 0; k < twists.size(); ++k) {
+      most = std::max(
+          {most, twists[k].linear.norm(), twists[k].angular.norm() * inertia_[k].bounding_radius});
+    }
+    return most;
+  };
+  std::vector<Twist> motion;
+  for (const BodyState& state : states) {
+    motion.push_back(state.twist);
+  }
+  if (largest(motion) == 0.0) {  // that which begins
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      motion[k].linear = wrenches[k].force / inertia_[k].mass;
+      if (inertia_[k].rotates) {
+        motion[k].angular = angular_acceleration(inertia_[k], states[k], wrenches[k].torque);
+      }
+    }
+    const double pushed = largest(motion);
+    (void)pass_on(motion, work);
+    if (largest(motion) <= resists * pushed) {
+      return false;
+    }
+  }
+  std::vector<BodyState> moving(states.begin(), states.end());
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    moving[k].twist = motion[k];
+  }
+  evaluate(t, moving, work);
+  const double bend = largest(motion) * largest(motion) / size_;  // about what motion bends rows by
+  for (Eigen::Index k = 0; k < stresses.cols(); ++k) {
+    double done = 0.0;
+    double scale = 0.0;
+    for (Eigen::Index i = 0; i < work.size(); ++i) {
+      const JointRow& row = work.rows[static_cast<std::size_t>(i)].row;
+      done += stresses(i, k) * row.bias;
+      scale += std::abs(stresses(i, k)) * bend / (row.turns_only ? size_ : 1.0);
+    }
+    if (std::abs(done) > resists * scale) {
+      return true;
+    }
+  }
+  return false;
 }
 
 namespace {

@@ -47,6 +47,12 @@ class JointSystem {
   [[nodiscard]] double residual(Instant t, std::span<const BodyState> states) const;
   /// Largest |r'|, m/s; of rows that only turn times the size.
   [[nodiscard]] double residual_rate(Instant t, std::span<const BodyState> states) const;
+  /// Whether they are at a dead centre: rows depend on each other only here, as those of what is
+  /// stretched straight between two points, and the motion that is there, or that these wrenches
+  /// (of all other forces) begin from rest, is allowed in first order and forbidden in second, by a
+  /// self-stress that does work on it [ConnellyWhiteley1996]. Driven sides are not asked.
+  [[nodiscard]] bool is_stuck(Instant t, std::span<const BodyState> states,
+                              std::span<const Wrench> wrenches) const;
   /// Adds the forces of the joints to `wrenches`, which hold all others.
   void add_forces(Instant t, std::span<const BodyState> states, std::span<Wrench> wrenches) const;
   /// Power of driven sides while their joints carry such wrenches (joints not included), W.

@@ -1,6 +1,7 @@
 #include "core/contacts/routh_impact.hpp"
 
 #include "core/circular.hpp"
+#include "core/contacts/least_norm.hpp"
 
 #include <Eigen/LU>
 
@@ -23,6 +24,9 @@ constexpr double straight = 1e-13;
 constexpr double nearly_stopped = 1e-12;
 /// What sticks parts by less than this part of what a normal impulse does: by roundoff of joints.
 constexpr double locked = 1e-12;
+/// Of W, and of the speeds that a relative velocity is a difference of: roundoff.
+constexpr double unknown = 16.0 * std::numeric_limits<double>::epsilon();
+constexpr double unfelt = 64.0 * std::numeric_limits<double>::epsilon();
 /// What needs no more than this part of friction beyond it is held: it is known no better.
 constexpr double barely = 1e-12;
 /// What joints block to 1e-12 of what it would be moves by the root of that.
@@ -49,8 +53,8 @@ struct Course {
 
 class Routh {
  public:
-  Routh(const Matrix3& W, double mu, double e)
-      : W_(W), mu_(mu), e_(e), blocked_{W(1, 1) == 0.0, W(2, 2) == 0.0} {}
+  Routh(const Matrix3& W, double mu, double e, double speeds)
+      : W_(W), mu_(mu), e_(e), speeds_(speeds), blocked_{W(1, 1) == 0.0, W(2, 2) == 0.0} {}
 
   RouthImpact run(const Vector3& u) {
     course_.u = u;
@@ -98,9 +102,14 @@ class Routh {
   void stop_at_once() {
     for (int k = 0; k < 2; ++k) {
       if (blocked_[static_cast<std::size_t>(k)] &&
-          std::abs(course_.u[k + 1]) > hardly_moves * course_.u.norm()) {
+          std::abs(course_.u[k + 1]) >
+              std::max(hardly_moves * course_.u.norm(), unfelt * speeds_)) {
         return fail();  // nothing can stop it
       }
+    }
+    const Vector2 hold = against(W_.block<2, 1>(1, 0));
+    if (is_locked(hold) && stand_still()) {
+      return;
     }
     hold_still();
     over_ = course_.u[0] >= 0.0;
@@ -109,11 +118,10 @@ class Routh {
   /// At rest along the surface: either friction holds, or sliding begins.
   void stopped() {
     const Vector2 hold = against(W_.block<2, 1>(1, 0));
+    if (is_locked(hold)) {
+      return lock(hold);
+    }
     if (hold.norm() <= mu_ * (1.0 + barely)) {
-      const double parts = W_(0, 0) + hold.dot(W_.block<2, 1>(1, 0));
-      if (parts <= locked * W_(0, 0)) {
-        return lock();
-      }
       return along(push(hold), infinity, true);
     }
     if (const std::optional<Vector2> d = leaving()) {
@@ -122,13 +130,45 @@ class Routh {
     fail();
   }
 
+  /// Whether what friction holds this way parts by no impulse: joints let it not.
+  [[nodiscard]] bool is_locked(const Vector2& hold) const {
+    const double parts = W_(0, 0) + hold.dot(W_.block<2, 1>(1, 0));
+    const double known = unknown * W_.lpNorm<Eigen::Infinity>() * push(hold).squaredNorm();
+    return hold.norm() <= mu_ * (1.0 + barely) && parts <= std::max(locked * W_(0, 0), known);
+  }
+
   /// Joints let nothing part that sticks: whatever presses, friction holds it, and it gives nothing
   /// back.
-  void lock() {
-    if (course_.u[0] < -nearly_stopped * std::max(slip_, first_)) {
+  void lock(const Vector2& hold) {
+    const double none = std::max(nearly_stopped * std::max(slip_, first_), unfelt * speeds_);
+    if (course_.u[0] < -none * push(hold).norm()) {
       return fail();  // nor does anything stop it
     }
     over_ = true;
+  }
+
+  /// What is rough and locked stops altogether, by the least impulse: what stops sliding first, and
+  /// then presses, may be a difference of much larger ones. False if something moves on, as what
+  /// drives it cannot be stopped.
+  [[nodiscard]] bool stand_still() {
+    Vector3 p = -least_norm(W_, course_.u);
+    Vector3 left = course_.u + W_ * p;
+    if (left.norm() > hardly_moves * std::max(speeds_, course_.u.norm())) {
+      return false;
+    }
+    p[0] -= left[0] / W_(0, 0);
+    if (p[0] < 0.0) {
+      return false;
+    }
+    left = course_.u + W_ * p;
+    const Vector3 mean = 0.5 * (course_.u + left);
+    const double whole = p.dot(mean);
+    course_.rubbed = std::min(std::max(p.tail<2>().dot(mean.tail<2>()), whole), 0.0);
+    course_.work = whole - course_.rubbed;
+    course_.p = p;
+    course_.u = left;
+    over_ = true;
+    return true;
   }
 
   /// Direction in which sliding begins from rest: along the part of W_tn that friction leaves.
@@ -143,7 +183,7 @@ class Routh {
     };
     const double first = arc_tangent(W_(2, 0), W_(1, 0));
     const Vector2 d(cosine(first), sine(first));
-    if (std::abs(across(first)) <= straight * W_.block<2, 1>(1, 0).norm() &&
+    if (std::abs(across(first)) <= straight_enough(W_.block<2, 1>(1, 0)) &&
         pull(first).dot(d) > 0.0) {
       return Vector2(W_.block<2, 1>(1, 0).normalized());
     }
@@ -172,10 +212,14 @@ class Routh {
     const Vector2 d = course_.u.tail<2>().normalized();
     const Vector2 rate = (W_ * push(-mu_ * d)).tail<2>();
     const double turns = std::abs(d[0] * rate[1] - d[1] * rate[0]);
-    // Where friction nearly holds, and along what nothing moves, it slides on: the direction comes
-    // to an equilibrium.
+    return turns <= straight_enough(rate);
+  }
+
+  /// What changes a direction by less turns nothing. Where friction nearly holds, and along what
+  /// nothing moves, it slides on: the direction comes to an equilibrium.
+  [[nodiscard]] double straight_enough(const Vector2& rate) const {
     const double scale = W_.block<2, 1>(1, 0).norm() + mu_ * W_.block<2, 2>(1, 1).norm();
-    return turns <= std::max(straight * rate.norm(), settled * scale);
+    return std::max(straight * rate.norm(), settled * scale);
   }
 
   void slide(const Vector2& d) {
@@ -342,6 +386,7 @@ class Routh {
   const Matrix3& W_;
   double mu_;
   double e_;
+  double speeds_;                ///< of which u is a difference, m/s
   std::array<bool, 2> blocked_;  ///< by tangent: no impulse moves anything along it
   Course course_{};
   double slip_ = 0.0;   ///< at first, m/s
@@ -353,8 +398,8 @@ class Routh {
 
 }  // namespace
 
-RouthImpact routh_impact(const Matrix3& W, const Vector3& u, double mu, double e) {
-  return Routh(W, mu, e).run(u);
+RouthImpact routh_impact(const Matrix3& W, const Vector3& u, double mu, double e, double speeds) {
+  return Routh(W, mu, e, speeds).run(u);
 }
 
 bool painleve(const Matrix3& W, double mu, const Eigen::Vector2d& d) {

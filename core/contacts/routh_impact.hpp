@@ -24,11 +24,13 @@ struct RouthImpact {
 /// Without friction this is Newton's restitution.
 ///
 /// `W`: what an impulse does to the relative velocity, symmetric, positive definite, 1/kg; but rows
-/// and columns of tangents may be 0, along which joints let nothing move;
-/// `u`: relative velocity before, u_0 < 0, m/s. Components: normal, then two tangents. `mu` >= 0,
-/// may be infinite. Exact (piecewise linear) where sliding keeps its direction, as in a plane and
-/// of spheres; otherwise by Taylor series [Jorba2005], to roundoff.
-[[nodiscard]] RouthImpact routh_impact(const Matrix3& W, const Vector3& u, double mu, double e);
+/// and columns of tangents may be 0, along which joints let nothing move, and joints may leave it
+/// singular: what friction then holds against any pressing stands still;
+/// `u`: relative velocity before, u_0 < 0, a difference of `speeds`, m/s. Components: normal, then
+/// two tangents. `mu` >= 0, may be infinite. Exact (piecewise linear) where sliding keeps its
+/// direction, as in a plane and of spheres; otherwise by Taylor series [Jorba2005], to roundoff.
+[[nodiscard]] RouthImpact routh_impact(const Matrix3& W, const Vector3& u, double mu, double e,
+                                       double speeds = 0.0);
 
 /// Whether sliding along d (unit, tangents) presses the bodies together the more the more they
 /// press: W_nn - mu W_nt.d <= 0 [Painleve1895].

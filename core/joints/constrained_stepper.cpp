@@ -45,6 +45,18 @@ class ConstrainedStepper final : public Stepper {
   }
 
   StepResult step(const Island& island, Instant t, double h, std::span<BodyState> states) override {
+    if (!asked_) {
+      asked_ = true;
+      stuck_ = is_stuck(island, t, states);
+    }
+    if (stuck_) {
+      StepResult result;
+      result.ok = false;
+      result.reason =
+          "the joints are at a dead centre: what is stretched straight between two points has no "
+          "position near by in which it moves as it is pushed (give it slack)";
+      return result;
+    }
     if (anew_) {
       own_.assign(states.begin(), states.end());
       inner_->restart(island, t, own_);
@@ -100,13 +112,23 @@ class ConstrainedStepper final : public Stepper {
     anew_ = false;
   }
 
+  static bool is_stuck(const Island& island, Instant t, std::span<const BodyState> states) {
+    Island applied = island;
+    applied.forces.pop_back();  // that of the joints
+    std::vector<Wrench> wrenches(states.size());
+    applied.wrenches(t, states, wrenches);
+    return island.joints->is_stuck(t, states, wrenches);
+  }
+
   std::unique_ptr<Stepper> inner_;
   double most_drift_;              ///< of a multistep method's own states, relative to the size
   std::vector<BodyState> own_;     ///< of the stepper, not put back
   std::vector<BodyState> before_;  ///< of the last step, as they are told
   std::vector<BodyState> after_;
   double h_ = 0.0;
-  bool anew_ = false;  ///< the stepper begins at what is told with the next step
+  bool anew_ = false;   ///< the stepper begins at what is told with the next step
+  bool asked_ = false;  ///< whether the joints are stuck where the first step begins
+  bool stuck_ = false;
 };
 
 }  // namespace

@@ -241,6 +241,31 @@ TEST_CASE("routh: what joints let not slide is rubbed all the same", "[routh]") 
   CHECK_FALSE(routh_impact(W, {-1.0, 0.0, 2.0}, INFINITY, 0.5).solved);
 }
 
+TEST_CASE("routh: what joints and friction lock stands still", "[routh]") {
+  // Along one line only do joints let the point move: any pressing that friction holds across is
+  // taken up, and all motion ends at once. Two balls that hang side by side are such a case.
+  for (const double angle : {0.3, 0.0063, 3e-5, -0.4}) {
+    const Vector3 line = Vector3(std::cos(angle), std::sin(angle), 0.0);
+    const Matrix3 W = 2.0 * line * line.transpose();
+    for (const double speed : {1.3, 1e-4, 3e-12}) {
+      // The velocities of the two, of which this is a difference, have roundoff of their own.
+      const Vector3 before = -speed * line + Vector3(0.0, 2e-16, 0.0);
+      const RouthImpact impact = routh_impact(W, before, INFINITY, 0.5, 1.0);
+      CAPTURE(angle, speed);
+      REQUIRE(impact.solved);
+      CHECK(impact.velocity.norm() <= 1e-12 * speed + 1e-15);
+      CHECK(impact.impulse[0] > 0.0);
+      CHECK(impact.friction_work <= 0.0);
+      CHECK(impact.normal_work + impact.friction_work ==
+            Approx(-0.25 * speed * speed).epsilon(1e-3 * 3e-12 / speed + 1e-12));
+    }
+  }
+  // What a drive moves across it cannot be stopped.
+  const Vector3 steep(0.1, std::sqrt(0.99), 0.0);
+  const Matrix3 W = 2.0 * steep * steep.transpose();
+  CHECK_FALSE(routh_impact(W, -steep + Vector3(-0.1, 0.01, 0.0), INFINITY, 0.5, 1.0).solved);
+}
+
 TEST_CASE("routh 13: Painleve's angles of a rod and of a thin box", "[routh][reference]") {
   // A rod of length 2 slides on its end at the angle theta: the sign of W_nn - mu W_nt.d changes.
   const auto edge = [](double half, double thick, double mu, double from, double to) {

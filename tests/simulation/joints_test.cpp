@@ -342,6 +342,36 @@ TEST_CASE("joints: an over-determined loop moves as its one degree of freedom sa
   tests::check_explained(result.ledger);
 }
 
+TEST_CASE("joints: a chain stretched straight between two points stops at once where it is pushed",
+          "[joints]") {
+  // Two balls and three rods of 0.4 m between fixed points. Where these are 1.2 m apart, the balls
+  // have no other position near by: what pushes them across asks for a force without a bound.
+  const auto chain = [](const Vector3& first, const Vector3& second, const Vector3& end) {
+    SceneBuilder builder("chain");
+    builder.set("duration", 0.2);
+    for (const auto& [name, position] : {std::pair("one", first), std::pair("two", second)}) {
+      builder.body(name,
+                   {{"entity", "ball"}, {"radius", 0.05}, {"mass", 1}, {"position", position}});
+    }
+    using Names = std::vector<std::string>;
+    builder.add("joint", {{"kind", "rod"}, {"bodies", Names{"one"}}, {"anchor", Vector3(0, 0, 0)}});
+    builder.add("joint", {{"kind", "rod"}, {"bodies", Names{"one", "two"}}});
+    builder.add("joint", {{"kind", "rod"}, {"bodies", Names{"two"}}, {"anchor", end}});
+    Trajectory trajectory;
+    return simulate(Model(builder.scene()), fine(0.2), trajectory);
+  };
+  const RunResult across = chain({0.4, 0.0, 0.0}, {0.8, 0.0, 0.0}, {1.2, 0.0, 0.0});
+  CHECK(across.status != RunStatus::completed);
+  CHECK(across.end.seconds == 0.0);
+  CHECK_THAT(across.reason, Catch::Contains("dead centre"));
+  // Gravity along it pushes nothing across, and with slack it hangs.
+  const RunResult along = chain({0.0, 0.4, 0.0}, {0.0, 0.8, 0.0}, {0.0, 1.2, 0.0});
+  CHECK(along.status == RunStatus::completed);
+  CHECK((along.state[0].pose.position - Vector3(0.0, 0.4, 0.0)).norm() < 1e-14);
+  CHECK(chain({0.32, -0.24, 0.0}, {0.72, -0.24, 0.0}, {1.04, 0.0, 0.0}).status ==
+        RunStatus::completed);
+}
+
 TEST_CASE("joints: what cannot treat them says so", "[joints]") {
   const Model model(read_scene(find_scene("pendulum")));
   for (const auto& scheme : schemes()) {

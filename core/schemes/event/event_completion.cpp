@@ -154,14 +154,15 @@ std::vector<BodyIndex> EventContacts::hand_on_at_once(const Event& first,
 
 /// Impulses at all touches of a group at once, after which nothing approaches any more; they are
 /// within the cones of friction, and what nobody presses parts as it will [Moreau1988]. None where
-/// joints or belts take part, or nothing touches.
+/// what is driven moves joints, where belts take part, or nothing touches.
 std::optional<EventContacts::Pushes> EventContacts::pushes_among(
     const EventModes::GroupImpact& impact) {
   const bool belts = std::any_of(impact.bodies.begin(), impact.bodies.end(), [&](BodyIndex i) {
     return !run_.model.entity(i).surface_velocity(run_.model.body(i), motions_.now(i)).isZero(0.0);
   });
-  if (!impact.refusal.empty() || impact.system.joints != nullptr || impact.system.rows.empty() ||
-      belts) {
+  const std::shared_ptr<const GroupJoints>& joints = impact.system.joints;
+  const bool driven = joints != nullptr && joints->driven();
+  if (!impact.refusal.empty() || driven || impact.system.rows.empty() || belts) {
     return std::nullopt;
   }
   Pushes pushes;
@@ -171,7 +172,7 @@ std::optional<EventContacts::Pushes> EventContacts::pushes_among(
     pushes.before.push_back(stacked(impact.velocities[k]));
     fastest = std::max(fastest, impact.velocities[k].linear.norm());
   }
-  const ContactSweeps sweeps(impact.system.bodies, pushes.touches);
+  const ContactSweeps sweeps(impact.system.bodies, pushes.touches, joints);
   pushes.swept = sweeps.sweep(pushes.before, {}, {}, settled * fastest, true);
   run_.cost.contact_solves += pushes.swept.solves;
   double pushed = 0.0;
@@ -237,7 +238,11 @@ std::vector<BodyIndex> EventContacts::give(const EventModes::GroupImpact& impact
       continue;
     }
     free.push_back(i);
-    const bool known = std::find(seeds.begin(), seeds.end(), i) != seeds.end();
+    // What hangs together with a seed was struck with it.
+    const JointSystem* const joints = joints_of(i);
+    const bool known = std::any_of(seeds.begin(), seeds.end(), [&](BodyIndex seed) {
+      return seed == i || (joints != nullptr && joints_of(seed) == joints);
+    });
     motions_.book(i, t);
     const BodyState struck = motions_.now(i);
     motions_.bring(i, t);

@@ -645,7 +645,7 @@ void EventContacts::persist(Archive& archive) {
   std::size_t n = touching_.size();
   archive.count(n);
   archive(stalled_, stalled_at_, pushed_, pushed_in_, struck_by_, struck_at_, struck_last_.first,
-          struck_last_.second, struck_alike_);
+          struck_last_.second, struck_alike_, struck_here_);
   if (archive.reading()) {
     for (std::size_t k = 0; k < n; ++k) {
       BodyIndex i = 0;

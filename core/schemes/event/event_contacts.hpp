@@ -73,6 +73,7 @@ class EventContacts {
   [[nodiscard]] bool meet_elsewhere(BodyIndex a, BodyIndex b, Instant t);
   void strike(Event& event);
   [[nodiscard]] const JointSystem* joints_of(BodyIndex i) const;
+  void put_onto_joints(const Event& event);
   void strike_jointed(Event& event);
   void rub_jointed(Event& event);
   [[nodiscard]] bool rest_on_joints(const Event& event, Instant t);
@@ -140,6 +141,7 @@ class EventContacts {
   void resume_support(BodyIndex i, Instant t);
   void follow(BodyIndex ball, const Support& support, Instant t);
   void count_strike(const BodyPair& pair, double speed, Instant t);
+  [[nodiscard]] bool strikes_on() const;
   [[nodiscard]] bool is_nothing(BodyIndex a, BodyIndex b, double speed) const;
   void lay_still(BodyIndex a, BodyIndex b);
   [[nodiscard]] double leaving_speed(BodyIndex ball, const Support& support, Instant t) const;
@@ -167,6 +169,7 @@ class EventContacts {
   Instant struck_at_ = Instant::never();
   BodyPair struck_last_{};  ///< who did, and how often one after the other
   int struck_alike_ = 0;
+  int struck_here_ = 0;  ///< how often anybody did at `struck_at_`
 };
 
 }  // namespace core

@@ -30,6 +30,9 @@ constexpr std::size_t few_rounds = 4;
 /// What strikes so often at one instant, and nothing else in between, is held back by what settles
 /// what it strikes each time: a heavy ball on a light box on a floor.
 constexpr int most_alike = 64;
+/// So do many that strike in turns, for each body: elastic rows of n hand on n / 2 for each.
+constexpr int most_in_turns = 200;
+constexpr int few_in_turns = 2000;
 
 /// What approaches by less than this part of the fastest that struck at the instant is nothing, if
 /// both move by less than `still` of it: pairs hand impacts to and fro that no coordinate tells.
@@ -227,7 +230,7 @@ void EventContacts::meet(Event& event, Instant t) {
     lay_still(a, b);
     return settle(bodies, t, {.may_turn = true}) ? void() : set_free(bodies, t);
   }
-  if (struck_alike_ % most_alike == 0 && end_by_pushing(pair, 0.0, t)) {
+  if (strikes_on() && end_by_pushing(pair, 0.0, t)) {
     return;
   }
   if (strike_group(event, std::max(-approach, 0.0))) {
@@ -247,8 +250,16 @@ void EventContacts::count_strike(const BodyPair& pair, double speed, Instant t) 
   const bool same = struck_at_ == t;
   struck_by_ = same ? std::max(struck_by_, speed) : speed;
   struck_alike_ = same && struck_last_ == pair ? struck_alike_ + 1 : 1;
+  struck_here_ = same ? struck_here_ + 1 : 1;
   struck_at_ = t;
   struck_last_ = pair;
+}
+
+/// Whether what struck last, and before at this instant, does so without end.
+bool EventContacts::strikes_on() const {
+  const int turns = std::max(few_in_turns, most_in_turns * static_cast<int>(run_.model.size()));
+  return run_.law.info().needs_contact &&
+         (struck_alike_ % most_alike == 0 || struck_here_ % turns == 0);
 }
 
 /// Whether an approach at this speed, m/s, is nothing beside what struck at this instant.
@@ -383,12 +394,20 @@ bool EventContacts::still_approaching(const Event& event, double approach, Insta
     return false;
   }
   depart(a, b, t);
-  run_.stop(t, fmt::format("still approaching: the impact law '{}' leaves {} approaching each "
-                           "other at {} m/s{}",
-                           run_.law.info().name, run_.names(a, b), -rebound,
-                           rough && jointed ? ": friction locks what joints press together, and no "
-                                              "impulse parts them; allowed: less friction"
-                                            : ""));
+  const auto is_driven = [&](BodyIndex i) {
+    return joints_of(i) != nullptr && joints_of(i)->driven();
+  };
+  const std::string_view what = is_driven(a) || is_driven(b)
+                                    ? "a drive presses together through joints"
+                                    : "joints press together";
+  run_.stop(t,
+            fmt::format("still approaching: the impact law '{}' leaves {} approaching each "
+                        "other at {} m/s{}",
+                        run_.law.info().name, run_.names(a, b), -rebound,
+                        rough && jointed ? fmt::format(": friction locks what {}, and no impulse "
+                                                       "parts them; allowed: less friction",
+                                                       what)
+                                         : ""));
   return true;
 }
 

@@ -185,15 +185,22 @@ void EventContacts::part_hanging(BodyIndex i, Instant t) {
   modes_.tell(modes_.part(motions_.island(i)), t);
 }
 
-/// Newton's hypothesis, with the effective mass that the joints leave at the contact: the two part
-/// e times as fast as they met, and the joints take the impulses that this needs.
-void EventContacts::strike_jointed(Event& event) {
-  const Model& model = run_.model;
+/// The velocities of the two of an impact, and of all that hangs together with them. Of what an
+/// impulse does to a light body by itself, joints to a heavy one may leave little: the roundoff of
+/// the rest would be a part of it.
+void EventContacts::put_onto_joints(const Event& event) {
   for (const BodyIndex i : {event.a, event.b}) {
     if (joints_of(i) != nullptr) {
       motions_.put_onto_joints(i, event.time);
     }
   }
+}
+
+/// Newton's hypothesis, with the effective mass that the joints leave at the contact: the two part
+/// e times as fast as they met, and the joints take the impulses that this needs.
+void EventContacts::strike_jointed(Event& event) {
+  const Model& model = run_.model;
+  put_onto_joints(event);
   event.contact.restitution = model.restitution(event.a, event.b);
   event.contact.friction = model.friction(event.a, event.b);
   event.before_a = motions_.now(event.a);
@@ -255,13 +262,19 @@ void EventContacts::rub_jointed(Event& event) {
   const Eigen::Matrix3d W = struck.system.coupling();
   RouthImpact impact;
   if (before[0] < 0.0 && W(0, 0) > 0.0) {
-    impact = routh_impact(W, before, event.contact.friction, event.contact.restitution);
+    impact = routh_impact(W, before, event.contact.friction, event.contact.restitution,
+                          at_point(event.before_a).norm() + at_point(event.before_b).norm());
   }
   if (impact.solved) {
     std::vector<Twist> v = struck.velocities();
     struck.system.push(impact.impulse, v);
     struck.put(v, run_, motions_);
-    run_.ledger.add(EnergyLine::restitution_loss, impact.normal_work);
+    put_onto_joints(event);
+    // What the impulse did in all is told by the speeds that joints left better than by W.
+    const Vector3 after = struck.along((at_point(motions_.now(event.b)) + belt_b) -
+                                       (at_point(motions_.now(event.a)) + belt_a));
+    const double whole = 0.5 * impact.impulse.dot(before + after);
+    run_.ledger.add(EnergyLine::restitution_loss, whole - impact.friction_work);
     run_.ledger.add(EnergyLine::impact_friction, impact.friction_work);
     const Vector3 p = struck.world(impact.impulse);
     const auto of_driver = [&](BodyIndex i, double sign) {
