@@ -1,7 +1,5 @@
 #include "core/joint_system.hpp"
 
-#include "core/contacts/least_norm.hpp"
-
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
@@ -209,7 +207,11 @@ bool JointSystem::is_stuck(Instant t, std::span<const BodyState> states,
     return false;
   }
   Workspace& work = workspace();
-  const Eigen::MatrixXd stresses = work.scale.asDiagonal() * null_space(work.W);
+  // W is symmetric: what its columns leave out it makes nothing of.
+  const Eigen::MatrixXd all =
+      work.orthogonal.householderQ() * Eigen::MatrixXd::Identity(work.size(), work.size());
+  const Eigen::MatrixXd stresses =
+      work.scale.asDiagonal() * all.rightCols(work.size() - work.orthogonal.rank());
   const auto largest = [&](std::span<const Twist> twists) {
     double most = 0.0;
     for (std::size_t k = 0; k < twists.size(); ++k) {
