@@ -364,6 +364,9 @@ TEST_CASE("joints: a chain stretched straight between two points stops at once w
   CHECK(across.status != RunStatus::completed);
   CHECK(across.end.seconds == 0.0);
   CHECK_THAT(across.reason, Catch::Contains("dead centre"));
+  CHECK(across.state[0].pose.position == Vector3(0.4, 0.0, 0.0));  // it ends where it began
+  CHECK(across.state[1].pose.position == Vector3(0.8, 0.0, 0.0));
+  tests::check_explained(across.ledger);
   // Gravity along it pushes nothing across, and with slack it hangs.
   const RunResult along = chain({0.0, 0.4, 0.0}, {0.0, 0.8, 0.0}, {0.0, 1.2, 0.0});
   CHECK(along.status == RunStatus::completed);

@@ -401,6 +401,19 @@ void EventMotions::go_on(BodyIndex i, Instant t) {
   }
 }
 
+/// The step that was to begin here failed: there is no motion from here on, but bodies are here.
+void EventMotions::stay_at_start(Flow& flow, Instant t) {
+  if (!is_shared(flow)) {
+    flow.states = flow.booked;
+  }
+  for (std::size_t k = 0; k < flow.states.size(); ++k) {
+    const BodyState& here = flow.states[k];
+    set_motion(flow.island.bodies[k], Motion::ballistic(t, std::numeric_limits<double>::infinity(),
+                                                        here.pose, here.twist, Vector3::Zero()));
+  }
+  flow.projection = {};
+}
+
 /// Takes one step of the stepper, and makes motions of it.
 void EventMotions::next_segment(Flow& flow, Instant t) {
   if (!is_shared(flow)) {
@@ -418,6 +431,7 @@ void EventMotions::next_segment(Flow& flow, Instant t) {
   ++run_.cost.steps;
   const StepResult step = flow.stepper->step(flow.island, t, h, flow.states);
   if (!step.ok || !(step.advanced > 0.0)) {
+    stay_at_start(flow, t);
     run_.stop(t, "integrator: " + std::string(step.reason));
     return;
   }

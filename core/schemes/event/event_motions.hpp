@@ -269,6 +269,7 @@ class EventMotions {
   [[nodiscard]] bool launch_plain(BodyIndex i, Instant t);
   [[nodiscard]] bool fly_on(BodyIndex i, const BodyState& state, const Vector3& weight, double mass,
                             Instant t);
+  void stay_at_start(Flow& flow, Instant t);
   void next_segment(Flow& flow, Instant t);
   void drive(BodyIndex i, Instant t);
   void set_motion(BodyIndex i, const Motion& motion);
