@@ -201,6 +201,20 @@ std::size_t JointSystem::rank(Instant t, std::span<const BodyState> states) cons
   return work.regular ? row_count_ : static_cast<std::size_t>(work.orthogonal.rank());
 }
 
+namespace {
+
+/// What a wrench alone makes a body do, m/s^2 and rad/s^2.
+Twist acceleration(const BodyInertia& inertia, const BodyState& state, const Wrench& wrench) {
+  Twist a;
+  a.linear = wrench.force / inertia.mass;
+  if (inertia.rotates) {
+    a.angular = angular_acceleration(inertia, state, wrench.torque);
+  }
+  return a;
+}
+
+}  // namespace
+
 bool JointSystem::is_stuck(Instant t, std::span<const BodyState> states,
                            std::span<const Wrench> wrenches) const {
   if (driven_ || rank(t, states) == row_count_) {
@@ -226,10 +240,7 @@ bool JointSystem::is_stuck(Instant t, std::span<const BodyState> states,
   }
   if (largest(motion) == 0.0) {  // that which begins
     for (std::size_t k = 0; k < states.size(); ++k) {
-      motion[k].linear = wrenches[k].force / inertia_[k].mass;
-      if (inertia_[k].rotates) {
-        motion[k].angular = angular_acceleration(inertia_[k], states[k], wrenches[k].torque);
-      }
+      motion[k] = acceleration(inertia_[k], states[k], wrenches[k]);
     }
     const double pushed = largest(motion);
     (void)pass_on(motion, work);
@@ -296,20 +307,14 @@ void JointSystem::solve_forces(Instant t, std::span<const BodyState> states,
                                std::span<const Wrench> wrenches, Workspace& work) const {
   evaluate(t, states, work);
   factor(states, work);
-  const auto acceleration = [&](std::size_t place) {
-    Twist a;
-    if (place != nowhere) {
-      a.linear = wrenches[place].force / inertia_[place].mass;
-      if (inertia_[place].rotates) {
-        a.angular = angular_acceleration(inertia_[place], states[place], wrenches[place].torque);
-      }
-    }
-    return a;
+  const auto pushed = [&](std::size_t place) {
+    return place == nowhere ? Twist{}
+                            : acceleration(inertia_[place], states[place], wrenches[place]);
   };
   work.b.resize(work.size());
   for (Eigen::Index i = 0; i < work.size(); ++i) {
     const Row& row = work.rows[static_cast<std::size_t>(i)];
-    work.b[i] = -(row.row.rate(acceleration(row.a), acceleration(row.b)) + row.row.bias);
+    work.b[i] = -(row.row.rate(pushed(row.a), pushed(row.b)) + row.row.bias);
   }
   work.solve();
 }

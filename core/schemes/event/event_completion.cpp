@@ -238,11 +238,7 @@ std::vector<BodyIndex> EventContacts::give(const EventModes::GroupImpact& impact
       continue;
     }
     free.push_back(i);
-    // What hangs together with a seed was struck with it.
-    const JointSystem* const joints = joints_of(i);
-    const bool known = std::any_of(seeds.begin(), seeds.end(), [&](BodyIndex seed) {
-      return seed == i || (joints != nullptr && joints_of(seed) == joints);
-    });
+    const bool known = struck_with(run_.model, seeds, i);
     motions_.book(i, t);
     const BodyState struck = motions_.now(i);
     motions_.bring(i, t);

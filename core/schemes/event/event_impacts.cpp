@@ -394,20 +394,19 @@ bool EventContacts::still_approaching(const Event& event, double approach, Insta
     return false;
   }
   depart(a, b, t);
-  const auto is_driven = [&](BodyIndex i) {
-    return joints_of(i) != nullptr && joints_of(i)->driven();
-  };
-  const std::string_view what = is_driven(a) || is_driven(b)
-                                    ? "a drive presses together through joints"
-                                    : "joints press together";
-  run_.stop(t,
-            fmt::format("still approaching: the impact law '{}' leaves {} approaching each "
-                        "other at {} m/s{}",
-                        run_.law.info().name, run_.names(a, b), -rebound,
-                        rough && jointed ? fmt::format(": friction locks what {}, and no impulse "
-                                                       "parts them; allowed: less friction",
-                                                       what)
-                                         : ""));
+  std::string why = fmt::format(
+      "still approaching: the impact law '{}' leaves {} approaching each other at {} m/s",
+      run_.law.info().name, run_.names(a, b), -rebound);
+  if (rough && jointed) {
+    const auto is_driven = [&](BodyIndex i) {
+      return joints_of(i) != nullptr && joints_of(i)->driven();
+    };
+    why +=
+        fmt::format(": friction locks what {}, and no impulse parts them; allowed: less friction",
+                    is_driven(a) || is_driven(b) ? "a drive presses together through joints"
+                                                 : "joints press together");
+  }
+  run_.stop(t, why);
   return true;
 }
 

@@ -51,6 +51,10 @@ double finite_radius(const Shape& shape) {
   return std::isfinite(radius) ? radius : 0.0;
 }
 
+bool is_among(std::span<const BodyIndex> bodies, BodyIndex i) {
+  return std::find(bodies.begin(), bodies.end(), i) != bodies.end();
+}
+
 }  // namespace
 
 /// Acceleration without contact forces.
@@ -123,30 +127,28 @@ double EventModes::rest_speed(BodyIndex a, BodyIndex b, const BodyState& at_a,
   return slow;
 }
 
+bool struck_with(const Model& model, std::span<const BodyIndex> seeds, BodyIndex i) {
+  if (is_among(seeds, i) || !model.is_free(i)) {
+    return is_among(seeds, i);  // what is not free is of no island
+  }
+  const Island& island = model.islands()[model.island_of(i)];
+  return island.joints != nullptr && std::any_of(island.bodies.begin(), island.bodies.end(),
+                                                 [&](BodyIndex k) { return is_among(seeds, k); });
+}
+
 EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instant t,
                                         const SettleOptions& options) {
   Gathered found;
   found.group.instant = at_once * run_.epoch();
   found.remaining = options.remaining;
-  const auto is_seed = [&](BodyIndex i) {
-    return std::find(seeds.begin(), seeds.end(), i) != seeds.end();
-  };
-  // What joints hold together was struck together.
-  const auto hangs_on_seed = [&](BodyIndex i) {
-    if (!run_.model.is_free(i)) {
-      return false;  // it is of no island
-    }
-    const Island& island = run_.model.islands()[run_.model.island_of(i)];
-    return island.joints != nullptr &&
-           std::any_of(island.bodies.begin(), island.bodies.end(), is_seed);
-  };
   const auto state_of = [&](BodyIndex i) {
     const auto elsewhere = std::find_if(options.moved.begin(), options.moved.end(),
                                         [&](const auto& of) { return of.first == i; });
     if (elsewhere != options.moved.end()) {
       return elsewhere->second;
     }
-    const bool known = is_seed(i) || run_.model.mobility(i) == Mobility::fixed || hangs_on_seed(i);
+    const bool known =
+        run_.model.mobility(i) == Mobility::fixed || struck_with(run_.model, seeds, i);
     return known ? motions_.now(i) : motions_.at(i, t);
   };
   const auto add_one = [&](BodyIndex i) {
@@ -255,7 +257,7 @@ EventModes::Gathered EventModes::gather(std::span<const BodyIndex> seeds, Instan
             run_.detector.overlap(run_.model.shape(a), at_a.pose, run_.model.shape(b), at_b.pose);
         least = normal_velocity({o.point, o.normal, 0.0}, at_a, at_b);
       }
-      const bool struck = options.impact && is_seed(a) && is_seed(b);
+      const bool struck = options.impact && is_among(seeds, a) && is_among(seeds, b);
       const bool elsewhere =
           options.turning ? least > slow || most < -slow : least < -slow || most > slow;
       const bool apart = std::find(options.apart.begin(), options.apart.end(), BodyPair{a, b}) !=

@@ -314,5 +314,9 @@ class EventModes {
   std::vector<Turned> has_turned_;
 };
 
+/// Whether a body was struck where the seeds of a group were: it is one, or joints hold it together
+/// with one.
+[[nodiscard]] bool struck_with(const Model& model, std::span<const BodyIndex> seeds, BodyIndex i);
+
 }  // namespace core
 }  // namespace kairos
