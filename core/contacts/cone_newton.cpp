@@ -208,7 +208,7 @@ ConeImpulses cone_at_once(const ConeProblem& problem, const VectorXd& begin, dou
   }
   if (way == AtOnce::compliant) {
     const ConeImpulses found = problem.friction.size() <= most_for_newton
-                                   ? cone_newton(problem, begin, settled)
+                                   ? newton_from({Start::given}, problem, begin, settled)
                                    : ConeImpulses{begin, infinity};
     return found.off <= settled ? found : cone_compliant(problem, begin, settled);
   }

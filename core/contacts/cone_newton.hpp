@@ -46,7 +46,8 @@ constexpr std::size_t most_at_once = 160;
 enum class AtOnce {
   newton,      ///< Newton's method, where touches are few
   interior,    ///< `cone_interior`
-  compliant,   ///< Newton's method, where touches are few, and then `cone_compliant`
+  compliant,   ///< Newton's method from where it begins, where touches are few, and then
+               ///< `cone_compliant`: where it goes astray, other starts seldom help
   proximal,    ///< the proximal points
   bounded,     ///< these with friction of 100 where touches are rough, as what is hardly pressed
                ///< and has no bound may be held by nothing at all

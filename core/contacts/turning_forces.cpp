@@ -140,10 +140,24 @@ TurningForces::Line TurningForces::pressing_line(std::size_t k,
 }
 
 MatrixXd TurningForces::couplings(std::span<const Line> asks, std::span<const Line> gives) const {
-  MatrixXd K(static_cast<Index>(asks.size()), static_cast<Index>(gives.size()));
-  for (Index r = 0; r < K.rows(); ++r) {
-    for (Index c = 0; c < K.cols(); ++c) {
-      K(r, c) = coupling(asks[static_cast<std::size_t>(r)], gives[static_cast<std::size_t>(c)]);
+  const auto coupled = [&](std::size_t k, std::size_t l) {
+    const Touch& r = state_.touches[k];
+    const Touch& s = state_.touches[l];
+    return state_.joints != nullptr || r.a == s.a || r.a == s.b || r.b == s.a || r.b == s.b;
+  };
+  MatrixXd K = MatrixXd::Zero(static_cast<Index>(asks.size()), static_cast<Index>(gives.size()));
+  // Lines of one touch follow each other.
+  for (std::size_t r = 0; r < asks.size(); ++r) {
+    std::size_t asked = asks.size();  // the touch of the last of `gives`, and whether it matters
+    bool matters = false;
+    for (std::size_t c = 0; c < gives.size(); ++c) {
+      if (c == 0 || gives[c].touch != asked) {
+        asked = gives[c].touch;
+        matters = coupled(asks[r].touch, asked);
+      }
+      if (matters) {
+        K(static_cast<Index>(r), static_cast<Index>(c)) = coupling(asks[r], gives[c]);
+      }
     }
   }
   return K;
