@@ -395,7 +395,7 @@ TEST_CASE("rims: of coins that hardly tilt on each other it is known where they 
 
 // Random scenes that stopped: a can that is struck and goes down flat, a rough coin that is thrown
 // up as its other side lands, a cone on its side over the edge of a slab.
-TEST_CASE("rims: what stopped once", "[turning][rims]") {
+TEST_CASE("rims: what stopped once", "[turning][rims][slow]") {
   const std::string can_and_ball =
       head(2.0, "0.5", half_space) +
       "[[body]]\nname = \"can\"\nentity = \"body\"\nshape = \"cylinder\"\nradius = 0.05\n"
