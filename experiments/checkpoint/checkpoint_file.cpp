@@ -17,7 +17,7 @@ namespace kairos::experiments {
 namespace {
 
 constexpr std::string_view magic = "kairos checkpoint ";
-constexpr std::string_view format_version = "8";
+constexpr std::string_view format_version = "9";
 constexpr std::size_t checksum_size = 16;
 /// Heads that are not damaged are shorter than this.
 constexpr std::size_t longest_head = std::size_t{1} << 24;

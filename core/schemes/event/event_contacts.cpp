@@ -22,6 +22,8 @@ constexpr double least_progress = 1e-12;
 constexpr Instant recorded{-1.0, 0.0};
 /// So often what stalls is settled as ever.
 constexpr int most_in_vain = 8;
+/// So often in a frame what no mode keeps goes on by itself.
+constexpr int most_let_go = 8;
 
 }  // namespace
 
@@ -116,8 +118,19 @@ void EventContacts::settle_anew(BodyIndex i, Instant t) {
     return;
   }
   set_free(bodies, t);
-  run_.stop(t, fmt::format("contact: the contacts of '{}' cannot be kept from here on: {}",
-                           run_.model.body(i).name, why));
+  if (!may_let_go(t)) {
+    run_.stop(t, fmt::format("contact: the contacts of '{}' cannot be kept from here on: {}",
+                             run_.model.body(i).name, why));
+  }
+}
+
+/// Whether bodies that nothing draws together, and no mode keeps, may go on by themselves. What
+/// presses them brings them together again, by impacts that are booked.
+bool EventContacts::may_let_go(Instant t) {
+  const double frame = std::floor(t.seconds / run_.mean_frame);
+  let_go_ = let_go_in_ == frame ? let_go_ + 1 : 1;
+  let_go_in_ = frame;
+  return let_go_ <= most_let_go;
 }
 
 void EventContacts::take_out(BodyIndex i, Instant t) {
@@ -135,9 +148,19 @@ void EventContacts::take_out(BodyIndex i, Instant t) {
   }
 }
 
+/// Two bodies meet: what hangs on joints goes on together, whether it strikes or not.
+void EventContacts::open(BodyIndex a, BodyIndex b, Instant t) {
+  motions_.open_pair(a, b, t);
+  for (const BodyIndex i : {a, b}) {
+    if (joints_of(i) != nullptr) {
+      motions_.bring_others(i, t);
+    }
+  }
+}
+
 void EventContacts::stay(BodyIndex a, BodyIndex b, Instant t) {
   const std::array<BodyIndex, 2> pair{a, b};
-  motions_.open_pair(a, b, t);
+  open(a, b, t);
   (void)meet_in_one_box(a, b, t);
   if (run_.stopped()) {
     return depart(a, b, t);
@@ -644,8 +667,8 @@ void EventContacts::Touching::persist(Archive& archive) { archive(settled, conta
 void EventContacts::persist(Archive& archive) {
   std::size_t n = touching_.size();
   archive.count(n);
-  archive(stalled_, stalled_at_, pushed_, pushed_in_, struck_by_, struck_at_, struck_last_.first,
-          struck_last_.second, struck_alike_, struck_here_);
+  archive(stalled_, stalled_at_, let_go_, let_go_in_, pushed_, pushed_in_, struck_by_, struck_at_,
+          struck_last_.first, struck_last_.second, struck_alike_, struck_here_);
   if (archive.reading()) {
     for (std::size_t k = 0; k < n; ++k) {
       BodyIndex i = 0;

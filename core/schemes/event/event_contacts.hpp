@@ -127,7 +127,9 @@ class EventContacts {
                                                        std::span<const BodyIndex> bodies,
                                                        double part, Instant t);
   void book_pushes(const EventModes::GroupImpact& impact, const Pushes& pushes, EnergyLine normal);
+  void open(BodyIndex a, BodyIndex b, Instant t);
   void set_free(std::span<const BodyIndex> bodies, Instant t);
+  [[nodiscard]] bool may_let_go(Instant t);
   [[nodiscard]] bool parts_all_over(BodyIndex a, BodyIndex b, double gap, double bracket) const;
   [[nodiscard]] Contact contact_at(BodyIndex a, BodyIndex b, Instant t, double bracket) const;
   void look_again(BodyIndex a, BodyIndex b, Instant t, double bracket);
@@ -163,6 +165,8 @@ class EventContacts {
   std::map<BodyIndex, Touching> touching_;
   int stalled_ = 0;  ///< how often bodies in touch were settled at one instant, and when
   Instant stalled_at_ = Instant::never();
+  int let_go_ = 0;           ///< how often bodies went on by themselves, in the frame `let_go_in_`
+  double let_go_in_ = -1.0;  ///< counted from the start of the run
   int pushed_ = 0;           ///< how often impacts were ended by pushing, in the frame `pushed_in_`
   double pushed_in_ = -1.0;  ///< counted from the start of the run
   double struck_by_ = 0.0;   ///< the fastest approach of those that struck at `struck_at_`, m/s

@@ -273,9 +273,18 @@ void EventContacts::rub_jointed(Event& event) {
     // What the impulse did in all is told by the speeds that joints left better than by W.
     const Vector3 after = struck.along((at_point(motions_.now(event.b)) + belt_b) -
                                        (at_point(motions_.now(event.a)) + belt_a));
-    const double whole = 0.5 * impact.impulse.dot(before + after);
-    run_.ledger.add(EnergyLine::restitution_loss, whole - impact.friction_work);
-    run_.ledger.add(EnergyLine::impact_friction, impact.friction_work);
+    // What joints block goes to their fixed sides, and does no work.
+    Vector3 given = impact.impulse;
+    double rubbed = impact.friction_work;
+    for (const Eigen::Index i : {1, 2}) {
+      if (W(i, i) == 0.0) {
+        given[i] = 0.0;
+        rubbed -= impact.impulse[i] * before[i];
+      }
+    }
+    const double whole = 0.5 * given.dot(before + after);
+    run_.ledger.add(EnergyLine::restitution_loss, whole - rubbed);
+    run_.ledger.add(EnergyLine::impact_friction, rubbed);
     const Vector3 p = struck.world(impact.impulse);
     const auto of_driver = [&](BodyIndex i, double sign) {
       return run_.model.mobility(i) == Mobility::driven ? sign * p.dot(at_point(motions_.now(i)))

@@ -330,8 +330,9 @@ void EventModes::commit(const Gathered& found, const FlatMode& mode, Instant t, 
     dissipated -= mode.driven;
   }
   if (dissipated != 0.0) {
-    const bool hopped = mode.slip.empty() || std::any_of(mode.rate.begin(), mode.rate.end(),
-                                                         [](double rate) { return rate > 0.0; });
+    const bool hopped =
+        found.remaining > 0.0 || mode.slip.empty() ||
+        std::any_of(mode.rate.begin(), mode.rate.end(), [](double rate) { return rate > 0.0; });
     const bool jammed = turning != nullptr && !turning->jammed.empty();
     run_.ledger.add(jammed   ? EnergyLine::impact_friction
                     : hopped ? EnergyLine::zeno_completion
