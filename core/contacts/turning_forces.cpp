@@ -140,23 +140,32 @@ TurningForces::Line TurningForces::pressing_line(std::size_t k,
 }
 
 MatrixXd TurningForces::couplings(std::span<const Line> asks, std::span<const Line> gives) const {
-  const auto coupled = [&](std::size_t k, std::size_t l) {
-    const Touch& r = state_.touches[k];
-    const Touch& s = state_.touches[l];
-    return state_.joints != nullptr || r.a == s.a || r.a == s.b || r.b == s.a || r.b == s.b;
-  };
   MatrixXd K = MatrixXd::Zero(static_cast<Index>(asks.size()), static_cast<Index>(gives.size()));
-  // Lines of one touch follow each other.
-  for (std::size_t r = 0; r < asks.size(); ++r) {
-    std::size_t asked = asks.size();  // the touch of the last of `gives`, and whether it matters
-    bool matters = false;
-    for (std::size_t c = 0; c < gives.size(); ++c) {
-      if (c == 0 || gives[c].touch != asked) {
-        asked = gives[c].touch;
-        matters = coupled(asks[r].touch, asked);
-      }
-      if (matters) {
-        K(static_cast<Index>(r), static_cast<Index>(c)) = coupling(asks[r], gives[c]);
+  const auto coupled = [&](const Line& ask, const Line& give) {
+    const Touch& r = state_.touches[ask.touch];
+    const Touch& s = state_.touches[give.touch];
+    const auto moved_by = [&](std::size_t i) {
+      return (i == s.a || i == s.b) && moves(state_.bodies[i]);
+    };
+    return state_.joints != nullptr || moved_by(r.a) || moved_by(r.b);
+  };
+  // Lines of a touch follow each other.
+  const auto end_of = [](std::span<const Line> lines, std::size_t from) {
+    std::size_t to = from + 1;
+    while (to < lines.size() && lines[to].touch == lines[from].touch) {
+      ++to;
+    }
+    return to;
+  };
+  for (std::size_t r = 0; r < asks.size(); r = end_of(asks, r)) {
+    const std::size_t rows_end = end_of(asks, r);
+    for (std::size_t c = 0; c < gives.size();) {
+      const std::size_t columns_end = end_of(gives, c);
+      const bool some = coupled(asks[r], gives[c]);
+      for (; c < columns_end; ++c) {
+        for (std::size_t i = r; i < rows_end && some; ++i) {
+          K(static_cast<Index>(i), static_cast<Index>(c)) = coupling(asks[i], gives[c]);
+        }
       }
     }
   }
