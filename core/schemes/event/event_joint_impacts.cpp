@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -257,6 +258,18 @@ void EventContacts::rub_jointed(Event& event) {
   const Vector3& point = event.contact.point;
   const auto at_point = [&](const BodyState& s) { return s.twist.at(point, s.pose.position); };
   const Vector3 u = (at_point(event.before_b) + belt_b) - (at_point(event.before_a) + belt_a);
+  // Of the speed at which they slide, what joints without a drive leave.
+  const auto left = [&](const BodyState& state_a, const BodyState& state_b) {
+    Vector3 sum = Vector3::Zero();
+    for (const auto& [i, state, sign] :
+         {std::tuple{event.a, &state_a, -1.0}, {event.b, &state_b, 1.0}}) {
+      const JointSystem* const joints = joints_of(i);
+      if (joints != nullptr && !joints->driven()) {
+        sum += sign * at_point(*state);
+      }
+    }
+    return sum;
+  };
   struck.look_along(point, n, u);
   const Vector3 before = struck.along(u);
   const Eigen::Matrix3d W = struck.system.coupling();
@@ -273,16 +286,17 @@ void EventContacts::rub_jointed(Event& event) {
     // What the impulse did in all is told by the speeds that joints left better than by W.
     const Vector3 after = struck.along((at_point(motions_.now(event.b)) + belt_b) -
                                        (at_point(motions_.now(event.a)) + belt_a));
-    // What joints block goes to their fixed sides, and does no work.
-    Vector3 given = impact.impulse;
+    double whole = 0.5 * impact.impulse.dot(before + after);
     double rubbed = impact.friction_work;
+    // What joints block goes to their fixed sides, and does no work on what they leave of a speed.
+    const Vector3 left_before = struck.along(left(event.before_a, event.before_b));
+    const Vector3 left_after = struck.along(left(motions_.now(event.a), motions_.now(event.b)));
     for (const Eigen::Index i : {1, 2}) {
       if (W(i, i) == 0.0) {
-        given[i] = 0.0;
-        rubbed -= impact.impulse[i] * before[i];
+        whole -= 0.5 * impact.impulse[i] * (left_before[i] + left_after[i]);
+        rubbed -= impact.impulse[i] * left_before[i];
       }
     }
-    const double whole = 0.5 * given.dot(before + after);
     run_.ledger.add(EnergyLine::restitution_loss, whole - rubbed);
     run_.ledger.add(EnergyLine::impact_friction, rubbed);
     const Vector3 p = struck.world(impact.impulse);
